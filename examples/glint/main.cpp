@@ -1,0 +1,94 @@
+// glint: the command-line face of mica.
+#include <cstdio>
+#include <exception>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <tbb/global_control.h>
+
+#include "render.hpp"
+
+namespace {
+
+/// The first line of a message; errors are one line.
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+int run(int argc, char** argv) {
+    CLI::App app("Glints by mica: how many facets flash, in every pixel, at constant cost.", "glint");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", std::string("glint ") + std::to_string(MICA_VERSION_MAJOR) + "." +
+                                          std::to_string(MICA_VERSION_MINOR) + "." +
+                                          std::to_string(MICA_VERSION_PATCH));
+    int threads = 0;
+    const auto add_threads = [&threads](CLI::App* command) {
+        command->add_option("--threads", threads, "threads (0: all cores); the picture does not depend on it");
+    };
+
+    glint::render_options render;
+    CLI::App* const render_command = app.add_subcommand("render", "render a glittering sphere or plane to a PNG");
+    render_command->add_option("--env", render.environment, "environment map, Radiance .hdr (none: a procedural one)");
+    render_command->add_option("--light", render.light, "environment")->capture_default_str();
+    render_command->add_option("--shape", render.shape, "sphere or plane")->capture_default_str();
+    render_command->add_option("--size", render.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+    render_command->add_option("--roughness", render.roughness, "GGX alpha, 0 to 1")->capture_default_str();
+    render_command->add_option("--density", render.log_density, "natural logarithm of the facets per unit uv^2")
+        ->capture_default_str();
+    render_command->add_option("--levels", render.levels, "brightness levels K of the environment")
+        ->capture_default_str();
+    render_command->add_option("--law", render.law, "binomial law: dual_gated or exact")->capture_default_str();
+    render_command->add_option("--interpolate", render.interpolate, "what a pixel blends: counts")
+        ->capture_default_str();
+    render_command->add_option("--seed", render.seed, "which realisation")->capture_default_str();
+    render_command->add_option("-o,--output", render.output, "PNG to write")->capture_default_str();
+    render_command->add_flag("--json", render.json, "print one JSON object about the picture");
+    add_threads(render_command);
+
+    glint::sheet_options sheet;
+    CLI::App* const sheet_command =
+        app.add_subcommand("sheet", "render a labelled contact sheet of densities, roughnesses and levels");
+    sheet_command->add_option("--seed", sheet.seed, "which realisation")->capture_default_str();
+    sheet_command->add_option("-o,--output", sheet.output, "PNG to write")->capture_default_str();
+    add_threads(sheet_command);
+
+    glint::furnace_options furnace;
+    CLI::App* const furnace_command =
+        app.add_subcommand("furnace", "white furnace: the mean of glint / smooth over many realisations");
+    furnace_command->add_option("--law", furnace.law, "binomial law: dual_gated or exact")->capture_default_str();
+    furnace_command->add_option("--levels", furnace.levels, "levels K, one or more")->delimiter(',');
+    furnace_command->add_option("--roughness", furnace.roughness, "GGX alphas")->delimiter(',');
+    furnace_command->add_option("--facets", furnace.facets, "facets per pixel, mean over the sphere")->delimiter(',');
+    furnace_command->add_option("--precision", furnace.precision, "standard error to reach from 1 facet per pixel")
+        ->capture_default_str();
+    furnace_command->add_flag("--json", furnace.json, "print {\"rows\": [...]}");
+    add_threads(furnace_command);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& asked) { // --help, --version
+        return app.exit(asked);
+    } catch (const CLI::ParseError& error) {
+        throw std::invalid_argument(first_line(error.what()) + " (see glint --help)");
+    }
+
+    if (threads < 0) throw std::invalid_argument("--threads " + std::to_string(threads) + " is negative");
+    std::optional<tbb::global_control> limit;
+    if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+
+    if (*render_command) glint::render(render);
+    if (*sheet_command) glint::sheet(sheet);
+    if (*furnace_command) glint::furnace(furnace);
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "glint: %s\n", first_line(error.what()).c_str());
+        return 2;
+    }
+}

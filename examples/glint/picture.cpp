@@ -1,0 +1,145 @@
+#include "picture.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+#include <stb_easy_font.h>
+#include <stb_image.h>
+#include <stb_image_write.h>
+#include <unistd.h>
+
+namespace glint {
+
+namespace {
+
+struct file_closer {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+/// A file that remembers whether more was asked of it than it has: stb fills up a truncated picture with zeros.
+struct watched_file {
+    std::FILE* file;
+    bool ran_out = false;
+
+    static int read(void* self, char* data, int size) {
+        auto& watched = *static_cast<watched_file*>(self);
+        const std::size_t got = std::fread(data, 1, static_cast<std::size_t>(size), watched.file);
+        watched.ran_out |= got == 0;
+        return static_cast<int>(got);
+    }
+    static void skip(void* self, int bytes) { std::fseek(static_cast<watched_file*>(self)->file, bytes, SEEK_CUR); }
+    static int eof(void* self) { return std::feof(static_cast<watched_file*>(self)->file); }
+};
+
+std::runtime_error problem(const std::string& path, const std::string& what) {
+    return std::runtime_error(path + ": " + what);
+}
+
+std::uint8_t srgb_byte(float linear) {
+    const float x = std::clamp(linear, 0.F, 1.F);
+    const float encoded = x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1 / 2.4F) - 0.055F;
+    return static_cast<std::uint8_t>(std::lround(255 * encoded));
+}
+
+} // namespace
+
+mica::environment_map read_environment(const std::string& path) {
+    if (std::filesystem::is_directory(path)) throw problem(path, "is a folder, not an environment map");
+    const std::unique_ptr<std::FILE, file_closer> file(std::fopen(path.c_str(), "rb"));
+    if (!file) throw problem(path, std::strerror(errno));
+
+    watched_file watched{file.get()};
+    const stbi_io_callbacks callbacks{watched_file::read, watched_file::skip, watched_file::eof};
+    if (!stbi_is_hdr_from_callbacks(&callbacks, &watched))
+        throw problem(path, "is not an environment map (expected a Radiance .hdr file)");
+    std::rewind(file.get());
+    watched.ran_out = false;
+
+    int width = 0, height = 0, bands = 0;
+    const std::unique_ptr<float, decltype(&stbi_image_free)> data(
+        stbi_loadf_from_callbacks(&callbacks, &watched, &width, &height, &bands, 3), &stbi_image_free);
+    if (watched.ran_out) throw problem(path, "is truncated");
+    if (!data) throw problem(path, std::string("cannot be read: ") + stbi_failure_reason());
+    if (width != 2 * height)
+        throw problem(path, "is not an environment map: " + std::to_string(width) + "x" + std::to_string(height) +
+                                " is not twice as wide as high");
+
+    const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
+    std::vector<mica::rgb<float>> texels(w * h);
+    for (std::size_t i = 0; i < w * h; ++i) {
+        const float* band = data.get() + 3 * i;
+        texels[i] = {band[0], band[1], band[2]};
+    }
+    return mica::environment_map(w, h, std::move(texels));
+}
+
+void tone_map(const radiance_picture& from, float exposure, srgb_picture& to, std::size_t left, std::size_t top) {
+    constexpr float white = 6;
+    const auto curve = [exposure](float radiance) {
+        const float x = std::min(exposure * radiance, 1e6F);
+        return srgb_byte(x * (1 + x / (white * white)) / (1 + x));
+    };
+    for (std::size_t y = 0; y < from.height; ++y)
+        for (std::size_t x = 0; x < from.width; ++x) {
+            const auto& pixel = from.pixels[y * from.width + x];
+            std::uint8_t* bytes = &to.bytes[3 * ((top + y) * to.width + left + x)];
+            bytes[0] = curve(pixel.r);
+            bytes[1] = curve(pixel.g);
+            bytes[2] = curve(pixel.b);
+        }
+}
+
+void draw_text(srgb_picture& picture, const std::string& text, std::size_t left, std::size_t top, std::size_t scale,
+               std::uint8_t grey) {
+    // Quads of four vertices: x, y, z as float, then four bytes of colour.
+    struct vertex {
+        float x, y, z;
+        unsigned char colour[4];
+    };
+    std::vector<vertex> vertices(text.size() * 80);
+    std::string writable = text;
+    const int quads = stb_easy_font_print(0, 0, writable.data(), nullptr, vertices.data(),
+                                          static_cast<int>(vertices.size() * sizeof(vertex)));
+    for (int quad = 0; quad < quads; ++quad) {
+        const vertex* corner = &vertices[4 * static_cast<std::size_t>(quad)];
+        const auto scaled = [scale](float x) { return static_cast<std::size_t>(std::max(x, 0.F)) * scale; };
+        for (std::size_t y = top + scaled(corner[0].y); y < top + scaled(corner[2].y); ++y)
+            for (std::size_t x = left + scaled(corner[0].x); x < left + scaled(corner[2].x); ++x)
+                if (x < picture.width && y < picture.height)
+                    std::fill_n(&picture.bytes[3 * (y * picture.width + x)], 3, grey);
+    }
+}
+
+png_file::png_file(std::string path) : path_(std::move(path)) {
+    if (!path_.ends_with(".png")) throw problem(path_, "cannot be written: pictures are written as .png");
+    if (std::filesystem::is_directory(path_)) throw problem(path_, "cannot be written: is a folder");
+    unfinished_ = path_ + "." + std::to_string(::getpid()) + ".part";
+    const std::unique_ptr<std::FILE, file_closer> file(std::fopen(unfinished_.c_str(), "wb"));
+    if (!file) throw problem(path_, std::string("cannot be written: ") + std::strerror(errno));
+}
+
+png_file::~png_file() {
+    if (!unfinished_.empty()) std::remove(unfinished_.c_str());
+}
+
+void png_file::save(const srgb_picture& picture) {
+    const auto write = [](void* file, void* data, int size) {
+        std::fwrite(data, 1, static_cast<std::size_t>(size), static_cast<std::FILE*>(file));
+    };
+    std::unique_ptr<std::FILE, file_closer> file(std::fopen(unfinished_.c_str(), "wb"));
+    const bool encoded = file && stbi_write_png_to_func(write, file.get(), static_cast<int>(picture.width),
+                                                        static_cast<int>(picture.height), 3, picture.bytes.data(), 0);
+    const bool written = encoded && std::fflush(file.get()) == 0 && std::ferror(file.get()) == 0;
+    file.reset();
+    if (!written || std::rename(unfinished_.c_str(), path_.c_str()) != 0)
+        throw problem(path_, std::string("cannot be written: ") + std::strerror(errno));
+    unfinished_.clear();
+}
+
+} // namespace glint

@@ -1,0 +1,54 @@
+// Pictures in and out: Radiance .hdr environments, tone curve, labels, PNG.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <mica/shade/environment.hpp>
+
+namespace glint {
+
+/// Linear radiance, row by row from the top.
+struct radiance_picture {
+    std::size_t width = 0, height = 0;
+    std::vector<mica::rgb<float>> pixels;
+};
+
+/// 8-bit sRGB, row by row from the top.
+struct srgb_picture {
+    std::size_t width = 0, height = 0;
+    std::vector<std::uint8_t> bytes; ///< three per pixel
+
+    srgb_picture(std::size_t width, std::size_t height, std::uint8_t grey)
+        : width(width), height(height), bytes(3 * width * height, grey) {}
+};
+
+/// An equirectangular Radiance file. Throws std::runtime_error, in one line, where it is missing, truncated, of another
+/// format, or not twice as wide as high.
+mica::environment_map read_environment(const std::string& path);
+
+/// Exposure, then x (1 + x / white^2) / (1 + x) in each band, then the sRGB curve.
+void tone_map(const radiance_picture& from, float exposure, srgb_picture& to, std::size_t left, std::size_t top);
+
+/// Draws text, `scale` pixels per pixel of a font 7 high, its top left corner at (left, top). ASCII.
+void draw_text(srgb_picture& picture, const std::string& text, std::size_t left, std::size_t top, std::size_t scale,
+               std::uint8_t grey);
+
+/// A PNG file that appears under its name only when it is whole. The constructor throws std::runtime_error where the
+/// file cannot be written, so that nobody renders for nothing; without save() nothing is left behind.
+class png_file {
+  public:
+    explicit png_file(std::string path);
+    ~png_file();
+    png_file(const png_file&) = delete;
+    png_file& operator=(const png_file&) = delete;
+
+    void save(const srgb_picture& picture);
+    const std::string& path() const { return path_; }
+
+  private:
+    std::string path_, unfinished_;
+};
+
+} // namespace glint

@@ -1,0 +1,7 @@
+// The one place where stb's single-header libraries are compiled.
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_ONLY_HDR
+#include <stb_image.h>
+
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#include <stb_image_write.h>

@@ -1,0 +1,30 @@
+// mica/mica.hpp: everything (but reference/, which is for judging it).
+#pragma once
+
+#include "config.hpp"
+
+#include "numeric/elementary.hpp"
+#include "numeric/gate.hpp"
+#include "numeric/normal.hpp"
+#include "numeric/number.hpp"
+#include "numeric/pack.hpp"
+
+#include "random/hash.hpp"
+#include "random/uniform.hpp"
+#include "random/uniform_stream.hpp"
+
+#include "law/binomial_law.hpp"
+#include "law/dual_gated.hpp"
+#include "law/exact.hpp"
+#include "law/multinomial.hpp"
+
+#include "grid/distributed.hpp"
+#include "grid/footprint.hpp"
+#include "grid/simplex.hpp"
+#include "grid/tetrahedron.hpp"
+
+#include "shade/environment.hpp"
+#include "shade/environment_glints.hpp"
+#include "shade/microfacet.hpp"
+#include "shade/prefilter.hpp"
+#include "shade/vector.hpp"

@@ -1,0 +1,142 @@
+// mica/numeric/number.hpp: the small vocabulary in which every law is written.
+//
+// A law does not know whether its number is a float, a double or a pack of them. It asks number_traits for the types
+// that go with it and uses the free functions below (and the ordinary operators); a comparison gives a mask, and
+// select() takes the place of the branch. numeric/pack.hpp says the same words for packs.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "../config.hpp"
+
+namespace mica {
+
+/// The types that go with a number type: its `scalar`, integers of the same size and lane count (`integer` signed,
+/// `bits` unsigned), a 32-bit `index` of the same lane count, and the `mask` that its comparisons give.
+template <class Number>
+struct number_traits {};
+
+template <>
+struct number_traits<float> {
+    using scalar = float;
+    using integer = std::int32_t;
+    using bits = std::uint32_t;
+    using index = std::uint32_t;
+    using mask = bool;
+    static constexpr int lanes = 1;
+};
+
+template <>
+struct number_traits<double> {
+    using scalar = double;
+    using integer = std::int64_t;
+    using bits = std::uint64_t;
+    using index = std::uint32_t;
+    using mask = bool;
+    static constexpr int lanes = 1;
+};
+
+template <class Number>
+using scalar_of = typename number_traits<Number>::scalar;
+template <class Number>
+using integer_of = typename number_traits<Number>::integer;
+template <class Number>
+using bits_of = typename number_traits<Number>::bits;
+template <class Number>
+using index_of = typename number_traits<Number>::index;
+template <class Number>
+using mask_of = typename number_traits<Number>::mask;
+template <class Number>
+inline constexpr int lanes_of = number_traits<Number>::lanes;
+
+/// A number type that the laws accept: float, double, pack<float, W>, pack<double, W>, or any other for which
+/// number_traits and the functions of this header exist.
+template <class Number>
+concept real_number = std::floating_point<scalar_of<Number>>;
+
+/// One plain number, no lanes.
+template <class Number>
+concept scalar_number = real_number<Number> && std::same_as<Number, scalar_of<Number>>;
+
+template <class Scalar>
+concept arithmetic = std::is_arithmetic_v<Scalar>;
+
+/// if_true where the mask holds, if_false elsewhere. Both are evaluated.
+template <arithmetic Number>
+MICA_HOST_DEVICE constexpr Number select(bool mask, Number if_true, Number if_false) {
+    return mask ? if_true : if_false;
+}
+
+MICA_HOST_DEVICE constexpr bool any(bool mask) { return mask; }
+MICA_HOST_DEVICE constexpr bool all(bool mask) { return mask; }
+
+/// Value by value, truncating towards zero. A real must lie within the range of the integer.
+template <arithmetic To, arithmetic From>
+MICA_HOST_DEVICE constexpr To convert(From value) {
+    return static_cast<To>(value);
+}
+
+/// The same bits under another type of the same size.
+template <arithmetic To, arithmetic From>
+    requires(sizeof(To) == sizeof(From))
+MICA_HOST_DEVICE constexpr To reinterpret(From value) {
+    return __builtin_bit_cast(To, value);
+}
+
+/// Lane `i` of a number; a scalar is its own only lane.
+template <arithmetic Number>
+MICA_HOST_DEVICE constexpr Number lane(Number value, int) {
+    return value;
+}
+
+// From here on in terms of the words above, so the same for scalars and packs.
+
+/// The smaller; b where a is NaN.
+template <class Number>
+MICA_HOST_DEVICE constexpr Number minimum(Number a, std::type_identity_t<Number> b) {
+    return select(a < b, a, b);
+}
+
+/// The larger; b where a is NaN.
+template <class Number>
+MICA_HOST_DEVICE constexpr Number maximum(Number a, std::type_identity_t<Number> b) {
+    return select(a > b, a, b);
+}
+
+/// x limited to [low, high]; low where x is NaN.
+template <real_number Number>
+MICA_HOST_DEVICE constexpr Number clamp(Number x, std::type_identity_t<Number> low, std::type_identity_t<Number> high) {
+    return minimum(maximum(x, low), high);
+}
+
+/// |x|
+template <real_number Number>
+MICA_HOST_DEVICE constexpr Number abs(Number x) {
+    return select(x < Number(0), -x, x);
+}
+
+/// The largest integer <= x, for every finite x. Through the integers, not by adding and subtracting a large number,
+/// which -ffast-math deletes.
+template <real_number Number>
+MICA_HOST_DEVICE constexpr Number floor(Number x) {
+    using Scalar = scalar_of<Number>;
+    constexpr Scalar all_integers_beyond = Scalar(1) / std::numeric_limits<Scalar>::epsilon();
+    const auto has_fraction = abs(x) < Number(all_integers_beyond);
+    const Number truncated = convert<Number>(convert<integer_of<Number>>(select(has_fraction, x, Number(0))));
+    return select(has_fraction, truncated - select(truncated > x, Number(1), Number(0)), x);
+}
+
+/// Whether x is NaN, read off its bits because -ffast-math deletes x != x.
+template <real_number Number>
+MICA_HOST_DEVICE constexpr mask_of<Number> is_nan(Number x) {
+    using Bits = bits_of<Number>;
+    constexpr scalar_of<Number> infinity = std::numeric_limits<scalar_of<Number>>::infinity();
+    constexpr auto infinity_bits = reinterpret<bits_of<scalar_of<Number>>>(infinity);
+    constexpr auto all_but_sign = std::numeric_limits<decltype(infinity_bits)>::max() >> 1;
+    return (reinterpret<Bits>(x) & Bits(all_but_sign)) > Bits(infinity_bits);
+}
+
+} // namespace mica

@@ -1,0 +1,234 @@
+// mica/numeric/pack.hpp: pack<T, W>, W numbers that are computed side by side.
+//
+// A pack is a number type: every law accepts pack<float, 8> where it accepts float, and gives in each lane what it
+// gives for a float (to the last bit when floating contraction is off). It is a thin coat over the compilers' vector
+// extensions because plain loops stay scalar under a user's default flags: g++ needs -fno-trapping-math and both
+// compilers -fno-math-errno to vectorise them, and a header cannot ask its users for flags. Without the extensions
+// (MICA_VECTOR_EXTENSIONS 0) it is an array and a loop.
+#pragma once
+
+#include <cstddef>
+
+#include "number.hpp"
+
+#if MICA_VECTOR_EXTENSIONS
+// Compilers warn that vectors wider than the target's registers are passed differently under other -march flags.
+// Packs are arguments of inline functions only, never of a binary interface. Not restored at the end of this file
+// because the warning names the place of use.
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
+namespace mica {
+
+template <class T, int W>
+struct pack;
+
+namespace detail {
+
+template <std::size_t Bytes>
+struct signed_of_size;
+template <>
+struct signed_of_size<4> {
+    using type = std::int32_t;
+};
+template <>
+struct signed_of_size<8> {
+    using type = std::int64_t;
+};
+
+#if MICA_VECTOR_EXTENSIONS
+template <class T, int W>
+struct vector_of {
+    typedef T type __attribute__((vector_size(sizeof(T) * W)));
+};
+#else
+template <class T, int W>
+struct vector_of {
+    struct type {
+        T lane[W];
+        MICA_HOST_DEVICE constexpr T operator[](int i) const { return lane[i]; }
+        MICA_HOST_DEVICE constexpr T& operator[](int i) { return lane[i]; }
+    };
+};
+#endif
+
+} // namespace detail
+
+/// What the comparison of two packs gives: in each lane all bits set (true) or none. `Bytes` is the size of a lane.
+template <std::size_t Bytes, int W>
+struct pack_mask {
+    using element = typename detail::signed_of_size<Bytes>::type;
+    typename detail::vector_of<element, W>::type v;
+
+    MICA_HOST_DEVICE bool operator[](int i) const { return v[i] != 0; }
+
+#if MICA_VECTOR_EXTENSIONS
+    friend pack_mask operator&&(pack_mask a, pack_mask b) { return {a.v & b.v}; }
+    friend pack_mask operator||(pack_mask a, pack_mask b) { return {a.v | b.v}; }
+    friend pack_mask operator!(pack_mask a) { return {~a.v}; }
+#else
+    template <class Operation>
+    MICA_HOST_DEVICE static pack_mask each(Operation operation) {
+        pack_mask result{};
+        for (int i = 0; i < W; ++i) result.v[i] = operation(i) ? element(-1) : element(0);
+        return result;
+    }
+    MICA_HOST_DEVICE friend pack_mask operator&&(pack_mask a, pack_mask b) {
+        return each([&](int i) { return a[i] && b[i]; });
+    }
+    MICA_HOST_DEVICE friend pack_mask operator||(pack_mask a, pack_mask b) {
+        return each([&](int i) { return a[i] || b[i]; });
+    }
+    MICA_HOST_DEVICE friend pack_mask operator!(pack_mask a) {
+        return each([&](int i) { return !a[i]; });
+    }
+#endif
+};
+
+/// W numbers of type T (float, double, or a 32- or 64-bit integer), W a power of two. Arithmetic, comparison and
+/// integer operators work lane by lane; a plain number converts to a pack of equal lanes.
+template <class T, int W>
+struct pack {
+    static_assert(W >= 1 && (W & (W - 1)) == 0, "the lanes of a pack are a power of two");
+    using value_type = T;
+    using mask = pack_mask<sizeof(T), W>;
+    using vector = typename detail::vector_of<T, W>::type;
+    vector v;
+
+    pack() = default;
+    MICA_HOST_DEVICE explicit constexpr pack(vector lanes) : v(lanes) {}
+
+    /// The same value in every lane.
+    template <arithmetic Scalar>
+    MICA_HOST_DEVICE constexpr pack(Scalar value) : v{} {
+#if MICA_VECTOR_EXTENSIONS
+        v = static_cast<T>(value) - v; // x - 0 keeps the sign of -0, x + 0 does not
+#else
+        for (int i = 0; i < W; ++i) v[i] = static_cast<T>(value);
+#endif
+    }
+
+    MICA_HOST_DEVICE T operator[](int i) const { return v[i]; }
+    MICA_HOST_DEVICE void set(int i, T value) { v[i] = value; }
+
+    /// W consecutive elements in memory.
+    MICA_HOST_DEVICE static pack load(const T* from) {
+        pack result;
+        for (int i = 0; i < W; ++i) result.v[i] = from[i];
+        return result;
+    }
+    MICA_HOST_DEVICE void store(T* to) const {
+        for (int i = 0; i < W; ++i) to[i] = v[i];
+    }
+
+    /// start, start + 1, ..., start + W - 1
+    MICA_HOST_DEVICE static pack iota(T start) {
+        pack result;
+        for (int i = 0; i < W; ++i) result.v[i] = static_cast<T>(start + static_cast<T>(i));
+        return result;
+    }
+
+#if MICA_VECTOR_EXTENSIONS
+#define MICA_PACK_OPERATOR(op)                                                                                       \
+    friend pack operator op(pack a, pack b) { return pack(a.v op b.v); }
+#define MICA_PACK_COMPARISON(op)                                                                                     \
+    friend mask operator op(pack a, pack b) { return {a.v op b.v}; }
+#define MICA_PACK_SHIFT(op)                                                                                          \
+    friend pack operator op(pack a, int places) { return pack(a.v op static_cast<T>(places)); }
+    friend pack operator-(pack a) { return pack(-a.v); }
+#else
+    template <class Operation>
+    MICA_HOST_DEVICE static pack each(Operation operation) {
+        pack result;
+        for (int i = 0; i < W; ++i) result.v[i] = static_cast<T>(operation(i));
+        return result;
+    }
+#define MICA_PACK_OPERATOR(op)                                                                                       \
+    MICA_HOST_DEVICE friend pack operator op(pack a, pack b) {                                                       \
+        return each([&](int i) { return a[i] op b[i]; });                                                            \
+    }
+#define MICA_PACK_COMPARISON(op)                                                                                     \
+    MICA_HOST_DEVICE friend mask operator op(pack a, pack b) {                                                       \
+        return mask::each([&](int i) { return a[i] op b[i]; });                                                      \
+    }
+#define MICA_PACK_SHIFT(op)                                                                                          \
+    MICA_HOST_DEVICE friend pack operator op(pack a, int places) {                                                   \
+        return each([&](int i) { return a[i] op places; });                                                          \
+    }
+    MICA_HOST_DEVICE friend pack operator-(pack a) {
+        return each([&](int i) { return -a[i]; });
+    }
+#endif
+    MICA_PACK_OPERATOR(+)
+    MICA_PACK_OPERATOR(-)
+    MICA_PACK_OPERATOR(*)
+    MICA_PACK_OPERATOR(/)
+    MICA_PACK_OPERATOR(&)
+    MICA_PACK_OPERATOR(|)
+    MICA_PACK_OPERATOR(^)
+    MICA_PACK_SHIFT(<<)
+    MICA_PACK_SHIFT(>>)
+    MICA_PACK_COMPARISON(<)
+    MICA_PACK_COMPARISON(<=)
+    MICA_PACK_COMPARISON(>)
+    MICA_PACK_COMPARISON(>=)
+    MICA_PACK_COMPARISON(==)
+#undef MICA_PACK_OPERATOR
+#undef MICA_PACK_COMPARISON
+#undef MICA_PACK_SHIFT
+};
+
+template <class T, int W>
+struct number_traits<pack<T, W>> {
+    using scalar = T;
+    using integer = pack<typename detail::signed_of_size<sizeof(T)>::type, W>;
+    using bits = pack<std::make_unsigned_t<typename detail::signed_of_size<sizeof(T)>::type>, W>;
+    using index = pack<std::uint32_t, W>;
+    using mask = pack_mask<sizeof(T), W>;
+    static constexpr int lanes = W;
+};
+
+template <class T, int W>
+MICA_HOST_DEVICE inline pack<T, W> select(pack_mask<sizeof(T), W> mask, pack<T, W> if_true,
+                                          std::type_identity_t<pack<T, W>> if_false) {
+#if MICA_VECTOR_EXTENSIONS
+    return pack<T, W>(mask.v ? if_true.v : if_false.v);
+#else
+    return pack<T, W>::each([&](int i) { return mask[i] ? if_true[i] : if_false[i]; });
+#endif
+}
+
+template <std::size_t Bytes, int W>
+MICA_HOST_DEVICE inline bool any(pack_mask<Bytes, W> mask) {
+    bool result = false;
+    for (int i = 0; i < W; ++i) result |= mask[i];
+    return result;
+}
+
+template <std::size_t Bytes, int W>
+MICA_HOST_DEVICE inline bool all(pack_mask<Bytes, W> mask) {
+    return !any(!mask);
+}
+
+template <class To, class T, int W>
+    requires(lanes_of<To> == W)
+MICA_HOST_DEVICE inline To convert(pack<T, W> value) {
+#if MICA_VECTOR_EXTENSIONS
+    return To(__builtin_convertvector(value.v, typename To::vector));
+#else
+    return To::each([&](int i) { return value[i]; });
+#endif
+}
+
+template <class To, class T, int W>
+    requires(sizeof(To) == sizeof(pack<T, W>))
+MICA_HOST_DEVICE inline To reinterpret(pack<T, W> value) {
+    return __builtin_bit_cast(To, value);
+}
+
+template <class T, int W>
+MICA_HOST_DEVICE inline T lane(pack<T, W> value, int i) {
+    return value[i];
+}
+
+} // namespace mica

@@ -1,0 +1,70 @@
+// mica/random/uniform_stream.hpp: a counter-based stream of uniforms.
+//
+// Draw k of stream (seed, index) is a pure function of the three: mix(mix(index + (k + 1) G) ^ seed), G the golden
+// increment. No state to carry, nothing to warm up, any pixel at any time; a sequential generator would also tie the
+// lanes of a pack together.
+//
+// Distinct counters: among n consecutive indices and d draws the inner sums are all different while
+// n d <= 2^32 / 2.24, because multiples of G keep that distance (three-gap theorem). The seed enters between two
+// rounds, so two seeds share a number only by chance, as two random sequences would.
+#pragma once
+
+#include <cstdint>
+
+#include "hash.hpp"
+#include "uniform.hpp"
+
+namespace mica {
+
+/// uniform_stream<Real> xi{seed, index}; xi() is the next Real in the open (0,1).
+///
+/// seed and index are 32-bit (index_of<Real>: for a pack, one per lane). double takes two hashes a draw.
+template <real_number Real>
+class uniform_stream {
+  public:
+    using index_type = index_of<Real>;
+
+    MICA_HOST_DEVICE explicit constexpr uniform_stream(index_type seed, index_type index = index_type(0U))
+        : seed_(seed), index_(index) {}
+
+    /// The next uniform.
+    MICA_HOST_DEVICE constexpr Real operator()() {
+        const index_type first = next_bits();
+        if constexpr (sizeof(scalar_of<Real>) == 4)
+            return uniform_from_bits<Real>(first);
+        else
+            return uniform_from_bits<Real>(first, next_bits());
+    }
+
+    /// The next 32 random bits.
+    MICA_HOST_DEVICE constexpr index_type next_bits() {
+        counter_ += golden_increment;
+        return mix(mix(index_ + index_type(counter_)) ^ seed_);
+    }
+
+    /// A new independent stream, at the price of one draw of this one. For work that takes an unknown number of
+    /// draws (exact sampling): whatever it takes from the fork, this stream has moved by one.
+    MICA_HOST_DEVICE constexpr uniform_stream fork() { return uniform_stream(next_bits(), index_); }
+
+    /// Stream number `node` of a family with this stream's place in it; this one does not move.
+    MICA_HOST_DEVICE constexpr uniform_stream substream(std::uint32_t node) const {
+        return uniform_stream(hash(seed_, index_type(node)), index_);
+    }
+
+    /// The stream of lane i, standing where this one stands.
+    MICA_HOST_DEVICE constexpr uniform_stream<scalar_of<Real>> lane(int i) const {
+        uniform_stream<scalar_of<Real>> result(mica::lane(seed_, i), mica::lane(index_, i));
+        result.counter_ = counter_;
+        return result;
+    }
+
+  private:
+    template <real_number>
+    friend class uniform_stream;
+
+    index_type seed_;
+    index_type index_;
+    std::uint32_t counter_ = 0;
+};
+
+} // namespace mica

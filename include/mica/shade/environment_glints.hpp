@@ -1,0 +1,78 @@
+// mica/shade/environment_glints.hpp: glints under an environment.
+//
+//     radiance = L_o sum_k L_k M_k / (N sum_k L_k p_k),   p_k = (E_D / D_H) w_k,   M ~ Multinomial(N, p)
+//
+// Source: KK25 Sec. 4 and 5, Eq. 15, 17, 21. L_o is the smooth image-based radiance (split sum) in the mirror direction,
+// w_k the prefiltered indicators of the levels L_k, N the facets in the pixel. What is missing to sum p = 1 are facets
+// that reflect nothing. They and level 1, whose radiance is 0 as published, are what the multinomial of the other
+// K - 1 levels leaves over, so K levels cost K - 1 binomials per vertex.
+#pragma once
+
+#include <array>
+
+#include "../grid/distributed.hpp"
+#include "microfacet.hpp"
+#include "prefilter.hpp"
+
+namespace mica {
+
+/// Glint radiance over smooth radiance in one pixel, >= 0, with mean 1.
+///
+/// levels: L_1 = 0 .. L_K. indicators: w_1 .. w_K of the pixel's lobe. visible_fraction: E_D / D_H.
+/// 1, the mean, where the pixel has no facets to speak of (a degenerate footprint: trials < 1e-30) or sees only black.
+template <class Law, std::size_t K, scalar_number Real>
+MICA_HOST_DEVICE Real glint_ratio(const grid_vertices<Real>& vertices, Real trials, const std::array<Real, K>& levels,
+                                  const std::array<Real, K>& indicators, Real visible_fraction) {
+    std::array<Real, K - 1> probabilities{};
+    Real expected = 0; // of the radiance that one facet reflects, relative to the top level
+    for (std::size_t k = 1; k < K; ++k) {
+        probabilities[k - 1] = visible_fraction * indicators[k];
+        expected += levels[k] / levels[K - 1] * probabilities[k - 1];
+    }
+    if (!(trials >= Real(1e-30) && levels[K - 1] > 0 && expected > 0)) return 1;
+    const auto counts = distributed_multinomial<K - 1, Law>{}(vertices, probabilities);
+    Real reflected = 0;
+    for (std::size_t k = 1; k < K; ++k) reflected += levels[k] / levels[K - 1] * counts[k - 1];
+    return reflected / (trials * expected);
+}
+
+/// A glittering surface.
+struct glint_material {
+    float roughness = 0.1F;            ///< GGX alpha, in [0, 1]
+    float log_density = 13;            ///< natural logarithm of the facets per unit uv^2
+    rgb<float> f0 = {0.95F, 0.93F, 0.88F}; ///< reflectance at normal incidence
+    float footprint_scale = default_footprint_scale; ///< size of a glint, in pixels
+};
+
+/// What the kernel needs to know of a pixel.
+struct shading_point {
+    vector3<float> normal, wo; ///< of length 1, both away from the surface
+    uv_point<float> uv;
+    uv_derivatives<float> derivatives; ///< uv per pixel
+};
+
+/// Radiance towards the eye: with the facets counted, and the smooth limit of infinitely many.
+struct glint_radiance {
+    rgb<float> glint, smooth;
+};
+
+/// The radiance of a pixel. `seed` picks the realisation.
+template <class Law, std::size_t K>
+glint_radiance shade(const shading_point& point, const glint_material& material,
+                     const prefiltered_environment<K>& environment, const microfacet_table& table, std::uint32_t seed) {
+    const float n_dot_v = dot(point.normal, point.wo);
+    if (!(n_dot_v > 0)) return {{0, 0, 0}, {0, 0, 0}};
+    const auto lobe = environment(reflected(point.wo, point.normal), material.roughness);
+    const auto albedo = table.albedo(n_dot_v, material.roughness);
+    const rgb<float> reflectance = albedo.scale * material.f0 + rgb<float>{albedo.bias, albedo.bias, albedo.bias};
+    const rgb<float> smooth = reflectance * lobe.radiance;
+
+    const auto pixel = make_footprint(point.derivatives);
+    const float trials = minimum(std::exp(material.log_density) * pixel.area, 1e30F);
+    const auto vertices = make_grid_vertices(pixel, point.uv, trials, seed, material.footprint_scale);
+    const float ratio = glint_ratio<Law>(vertices, trials, environment.levels().radiance(), lobe.indicator,
+                                         table.visible_fraction(n_dot_v, material.roughness));
+    return {ratio * smooth, smooth};
+}
+
+} // namespace mica
