@@ -69,7 +69,7 @@ std::array<furnace_row, 2> furnace_rows(double facets, double roughness, double 
     const double wanted = facets >= 1 ? precision : 3 * precision;
     while (all.count < most && (all.count < batch || all.standard_error() > wanted)) {
         std::array<std::array<double, 2>, batch> means{};
-        parallel_loop{}(batch, [&](std::size_t i) {
+        tbb::parallel_for(std::size_t{0}, batch, [&](std::size_t i) {
             const auto seed = static_cast<std::uint32_t>(all.count + i);
             double sum = 0, grazing_sum = 0;
             std::size_t grazing_count = 0;
@@ -90,8 +90,8 @@ std::array<furnace_row, 2> furnace_rows(double facets, double roughness, double 
         }
     }
     const auto row = [&](const char* pixels, const running_mean& measured) {
-        return furnace_row{K,      facets,          log_density,               roughness,
-                           pixels, measured.mean(), measured.standard_error(), measured.count};
+        return furnace_row{
+            K, facets, log_density, roughness, pixels, measured.mean(), measured.standard_error(), measured.count};
     };
     return {row("all", all), row("grazing", grazing)};
 }

@@ -74,22 +74,20 @@ void render(const render_options& options) {
         with_levels(options.levels, [&](auto levels) {
             constexpr std::size_t K = decltype(levels)::value;
             const stopwatch watch;
-            const auto map = options.environment.empty() ? procedural_environment() : read_environment(options.environment);
+            const auto map =
+                options.environment.empty() ? procedural_environment() : read_environment(options.environment);
             png_file output(options.output);
 
             mica::glint_material material;
             material.roughness = static_cast<float>(options.roughness);
             material.log_density = static_cast<float>(options.log_density);
             const mica::prefiltered_environment<K> environment(map, mica::environment_levels<K>(map),
-                                                               {&material.roughness, 1}, parallel_loop{});
+                                                               {&material.roughness, 1}, parallel_loop{"prefiltering"});
             const mica::microfacet_table table;
             const double prepared = watch.seconds();
 
-            frame seen = [&] {
-                progress reporter("rendering", size.height);
-                return render_frame<decltype(law)>(scene(what, size.width, size.height), size.width, size.height,
-                                                   material, environment, table, options.seed, reporter);
-            }();
+            const frame seen = render_frame<decltype(law)>(scene(what, size.width, size.height), size.width,
+                                                           size.height, material, environment, table, options.seed);
             srgb_picture picture(size.width, size.height, 0);
             tone_map(seen.glint, exposure_of(seen), picture, 0, 0);
             output.save(picture);

@@ -15,11 +15,17 @@
 
 namespace glint {
 
-/// Runs the rows of the library's loops side by side.
+/// Runs the rows of a loop side by side, with progress under a label.
 struct parallel_loop {
+    const char* label;
+
     template <class Body>
     void operator()(std::size_t count, const Body& body) const {
-        tbb::parallel_for(std::size_t{0}, count, body);
+        progress reporter(label, count);
+        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+            body(i);
+            reporter.advance();
+        });
     }
 };
 
@@ -48,12 +54,12 @@ inline constexpr mica::rgb<float> background{0, 0, 0};
 template <class Law, std::size_t K>
 frame render_frame(const scene& seen, std::size_t width, std::size_t height, const mica::glint_material& material,
                    const mica::prefiltered_environment<K>& environment, const mica::microfacet_table& table,
-                   std::uint32_t seed, progress& reporter) {
+                   std::uint32_t seed) {
     const stopwatch watch;
     const std::vector<mica::rgb<float>> empty(width * height, background);
     frame result{{width, height, empty}, {width, height, empty}};
     std::vector<char> shows_surface(width * height, 0);
-    parallel_loop{}(height, [&](std::size_t y) {
+    parallel_loop{"rendering"}(height, [&](std::size_t y) {
         for (std::size_t x = 0; x < width; ++x) {
             const auto point = seen.surface(x, y);
             if (!point) continue;
@@ -63,7 +69,6 @@ frame render_frame(const scene& seen, std::size_t width, std::size_t height, con
             result.smooth.pixels[i] = radiance.smooth;
             shows_surface[i] = 1;
         }
-        reporter.advance();
     });
     result.seconds = watch.seconds();
 

@@ -76,8 +76,7 @@ class scene {
 
     /// The change of uv when the point moves.
     mica::uv_point<float> uv_change(mica::vector3<float> p, mica::vector3<float> by) const {
-        if (what_ == shape::sphere)
-            return {(p.z * by.x - p.x * by.z) / (p.x * p.x + p.z * p.z) / (2 * pi), -by.y / 2};
+        if (what_ == shape::sphere) return {(p.z * by.x - p.x * by.z) / (p.x * p.x + p.z * p.z) / (2 * pi), -by.y / 2};
         return uv(by);
     }
 
@@ -96,23 +95,25 @@ inline mica::environment_map procedural_environment() {
         float half_angle; ///< radians
         mica::rgb<float> radiance;
     };
-    const lamp lamps[] = {{{0.55F, 0.6F, 0.6F}, 0.035F, {900, 780, 600}},   // sun, front right
-                          {{-0.75F, 0.55F, 0.5F}, 0.22F, {18, 20, 24}},     // soft box, front left
-                          {{0.9F, 0.1F, -0.35F}, 0.12F, {30, 17, 8}},       // warm lamp, right, behind
-                          {{-0.5F, -0.1F, -0.85F}, 0.1F, {6, 12, 30}}};     // cool lamp, left, behind
+    const lamp lamps[] = {{{0.55F, 0.6F, 0.6F}, 0.035F, {900, 780, 600}}, // sun, front right
+                          {{-0.75F, 0.55F, 0.5F}, 0.22F, {18, 20, 24}},   // soft box, front left
+                          {{0.9F, 0.1F, -0.35F}, 0.12F, {30, 17, 8}},     // warm lamp, right, behind
+                          {{-0.5F, -0.1F, -0.85F}, 0.1F, {6, 12, 30}}};   // cool lamp, left, behind
     std::vector<mica::rgb<float>> texels;
     texels.reserve(width * height);
     for (std::size_t y = 0; y < height; ++y)
         for (std::size_t x = 0; x < width; ++x) {
-            const auto w = mica::direction_of({(static_cast<float>(x) + 0.5F) / width,
-                                               (static_cast<float>(y) + 0.5F) / height});
+            const auto w =
+                mica::direction_of({(static_cast<float>(x) + 0.5F) / width, (static_cast<float>(y) + 0.5F) / height});
             const float horizon = std::exp(-6 * std::abs(w.y));
-            mica::rgb<float> radiance = w.y > 0 ? mica::rgb<float>{0.10F, 0.16F, 0.30F} + horizon * mica::rgb<float>{0.5F, 0.35F, 0.2F}
-                                                : mica::rgb<float>{0.05F, 0.045F, 0.04F} + horizon * mica::rgb<float>{0.1F, 0.08F, 0.06F};
+            mica::rgb<float> radiance =
+                w.y > 0 ? mica::rgb<float>{0.10F, 0.16F, 0.30F} + horizon * mica::rgb<float>{0.5F, 0.35F, 0.2F}
+                        : mica::rgb<float>{0.05F, 0.045F, 0.04F} + horizon * mica::rgb<float>{0.1F, 0.08F, 0.06F};
             for (const auto& lamp : lamps) {
                 const float cosine = dot(w, mica::normalized(lamp.towards));
                 // A smooth edge, a tenth of the lamp wide.
-                const float edge = (lamp.half_angle - std::acos(mica::clamp(cosine, -1.F, 1.F))) / (0.1F * lamp.half_angle);
+                const float edge =
+                    (lamp.half_angle - std::acos(mica::clamp(cosine, -1.F, 1.F))) / (0.1F * lamp.half_angle);
                 radiance = radiance + mica::clamp(edge, 0.F, 1.F) * lamp.radiance;
             }
             texels.push_back(radiance);

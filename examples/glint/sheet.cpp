@@ -17,11 +17,10 @@ void sheet(const sheet_options& options) {
     const mica::microfacet_table table;
     const scene seen(shape::sphere, tile, tile);
     srgb_picture picture(margin_left + columns * (tile + gap), 2 * block, 24);
-    progress reporter("contact sheet", 2 * rows * std::size(densities) * tile);
 
     const auto draw_block = [&]<std::size_t K>(std::integral_constant<std::size_t, K>, std::size_t top) {
         const mica::prefiltered_environment<K> environment(map, mica::environment_levels<K>(map), roughnesses,
-                                                           parallel_loop{});
+                                                           parallel_loop{"prefiltering"});
         const auto left_of = [](std::size_t column) { return margin_left + column * (tile + gap); };
         draw_text(picture, "K = " + std::to_string(K), 8, top + 14, 2, 255);
         char label[64];
@@ -40,7 +39,7 @@ void sheet(const sheet_options& options) {
                 material.roughness = roughnesses[row];
                 material.log_density = densities[column];
                 const frame rendered = render_frame<mica::dual_gated_binomial>(seen, tile, tile, material, environment,
-                                                                               table, options.seed, reporter);
+                                                                               table, options.seed);
                 tone_map(rendered.glint, exposure_of(rendered), picture, left_of(column), tile_top);
                 if (column == 0)
                     tone_map(rendered.smooth, exposure_of(rendered), picture, left_of(columns - 1), tile_top);

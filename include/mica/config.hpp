@@ -36,16 +36,16 @@
 // What happens to a bad argument of a host-side constructor, and under MICA_CHECKED of everything else: by default
 // std::invalid_argument, or a line on standard error and std::abort where exceptions are off.
 #ifndef MICA_FAIL
-#define MICA_FAIL(parameter, value, requirement)                                                                     \
+#define MICA_FAIL(parameter, value, requirement)                                                                       \
     ::mica::detail::fail(parameter, static_cast<double>(value), requirement)
 #endif
 
 // An invariant of the caller's that has no value to name, tested under MICA_CHECKED only.
 #ifndef MICA_ASSERT
 #if MICA_CHECKED
-#define MICA_ASSERT(condition)                                                                                       \
-    do {                                                                                                             \
-        if (!(condition)) MICA_FAIL(#condition, 0, "true");                                                          \
+#define MICA_ASSERT(condition)                                                                                         \
+    do {                                                                                                               \
+        if (!(condition)) MICA_FAIL(#condition, 0, "true");                                                            \
     } while (false)
 #else
 #define MICA_ASSERT(condition) static_cast<void>(0)

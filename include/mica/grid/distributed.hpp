@@ -52,8 +52,7 @@ struct distributed_binomial {
     MICA_HOST_DEVICE Real operator()(const grid_vertices<Real>& vertices, Real probability) const {
         Real sum = 0;
         for (const auto& vertex : vertices)
-            sum += vertex.weight *
-                   Law{}(vertex.trials, probability, uniform_stream<Real>(vertex.seed)).successes;
+            sum += vertex.weight * Law{}(vertex.trials, probability, uniform_stream<Real>(vertex.seed)).successes;
         return sum;
     }
 };
@@ -66,8 +65,7 @@ struct distributed_multinomial {
                                                     const std::array<Real, K>& probabilities) const {
         std::array<Real, K> sum{};
         for (const auto& vertex : vertices) {
-            const auto outcome =
-                multinomial<K, Law>{}(vertex.trials, probabilities, uniform_stream<Real>(vertex.seed));
+            const auto outcome = multinomial<K, Law>{}(vertex.trials, probabilities, uniform_stream<Real>(vertex.seed));
             for (std::size_t k = 0; k < K; ++k) sum[k] += vertex.weight * outcome[k];
         }
         return sum;

@@ -82,8 +82,8 @@ MICA_HOST_DEVICE footprint<Real> make_footprint(const uv_derivatives<Real>& m) {
     const auto unscaled = [exponent](Real x) {
         return minimum(std::scalbn(x, exponent), std::numeric_limits<Real>::max());
     };
-    const Real area = minimum(std::scalbn(std::scalbn(determinant, exponent), exponent),
-                              std::numeric_limits<Real>::max());
+    const Real area =
+        minimum(std::scalbn(std::scalbn(determinant, exponent), exponent), std::numeric_limits<Real>::max());
     return {area, unscaled(sigma_max), unscaled(sigma_min), maximum(Real(1), sigma_max / sigma_min), orientation};
 }
 

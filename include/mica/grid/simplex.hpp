@@ -21,8 +21,7 @@ struct uv_point {
 template <scalar_number Real>
 MICA_HOST_DEVICE uv_point<Real> grid_coordinates(uv_point<Real> uv, const tetrahedron_vertex<Real>& grid) {
     constexpr Real pi = Real(3.14159265358979323846);
-    const Real angle =
-        pi * static_cast<Real>(grid.orientation) / static_cast<Real>(orientations(grid.log2_ratio));
+    const Real angle = pi * static_cast<Real>(grid.orientation) / static_cast<Real>(orientations(grid.log2_ratio));
     const Real sine = std::sin(angle), cosine = std::cos(angle);
     const Real across = uv.u * cosine + uv.v * sine;
     const Real along = uv.v * cosine - uv.u * sine;

@@ -114,11 +114,10 @@ MICA_HOST_DEVICE std::array<tetrahedron_vertex<Real>, 4> enclosing_tetrahedron(c
     std::array<tetrahedron_vertex<Real>, 4> result =
         fraction <= first ? std::array{vertex(0, 0, first - fraction), vertex(0, 1, fraction), vertex(1, 0, second),
                                        vertex(2, 0, third)}
-        : fraction <= first + second
-            ? std::array{vertex(0, 1, first), vertex(1, 0, second - (fraction - first)),
-                         vertex(1, 1, fraction - first), vertex(2, 0, third)}
-            : std::array{vertex(0, 1, first), vertex(1, 1, second), vertex(2, 0, 1 - fraction),
-                         vertex(2, 1, fraction - (first + second))};
+        : fraction <= first + second ? std::array{vertex(0, 1, first), vertex(1, 0, second - (fraction - first)),
+                                                  vertex(1, 1, fraction - first), vertex(2, 0, third)}
+                                     : std::array{vertex(0, 1, first), vertex(1, 1, second), vertex(2, 0, 1 - fraction),
+                                                  vertex(2, 1, fraction - (first + second))};
 
     // Cell areas r 4^l, in units of the smallest of them.
     Real total = 0;

@@ -37,9 +37,9 @@ struct any_uniform {
 template <class Law, class Real = float>
 concept binomial_law = real_number<Real> && std::default_initializable<Law> &&
     requires(const Law law, Real trials, Real probability, detail::any_uniform<Real> xi) {
-        { law(trials, probability, xi) } -> std::same_as<counts<Real>>;
-        { Law::integer_counts } -> std::convertible_to<bool>;
-    };
+    { law(trials, probability, xi) } -> std::same_as<counts<Real>>;
+    { Law::integer_counts } -> std::convertible_to<bool>;
+};
 
 namespace detail {
 

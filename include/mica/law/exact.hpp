@@ -26,9 +26,15 @@ namespace detail {
 /// log(n!) - log(sqrt(2 pi n) (n/e)^n), n >= 1, the error of Stirling's formula. Absolute error 1e-12.
 inline double stirling_error(double n) {
     constexpr double exactly[] = {0.,
-                                  0.0810614667953272582, 0.0413406959554092941, 0.0276779256849983391,
-                                  0.0207906721037650931, 0.0166446911898211922, 0.0138761288230707480,
-                                  0.0118967099458917701, 0.0104112652619720965, 0.00925546218271273292,
+                                  0.0810614667953272582,
+                                  0.0413406959554092941,
+                                  0.0276779256849983391,
+                                  0.0207906721037650931,
+                                  0.0166446911898211922,
+                                  0.0138761288230707480,
+                                  0.0118967099458917701,
+                                  0.0104112652619720965,
+                                  0.00925546218271273292,
                                   0.00833056343336287126};
     if (n <= 10) return exactly[static_cast<int>(n)];
     const double inverse_square = 1 / (n * n);
@@ -60,8 +66,8 @@ inline double binomial_probability(double k, double n, double p) {
     const double q = 1 - p;
     if (k <= 0) return std::exp(n * std::log1p(-p));
     if (k >= n) return std::exp(n * std::log(p));
-    const double exponent = stirling_error(n) - stirling_error(k) - stirling_error(n - k) - deviance(k, n * p) -
-                            deviance(n - k, n * q);
+    const double exponent =
+        stirling_error(n) - stirling_error(k) - stirling_error(n - k) - deviance(k, n * p) - deviance(n - k, n * q);
     return std::exp(exponent) * std::sqrt(n / (6.283185307179586 * k * (n - k)));
 }
 

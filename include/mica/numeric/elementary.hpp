@@ -85,8 +85,8 @@ MICA_HOST_DEVICE constexpr Real expm1_reduced(Real r) {
         return r + r * r * polynomial(r, c);
     } else {
         // 1/(k+2)!: the series; its first omitted term is below 2e-19
-        constexpr double c[] = {1. / 2,        1. / 6,        1. / 24,         1. / 120,        1. / 720,
-                                1. / 5040,     1. / 40320,    1. / 362880,     1. / 3628800,    1. / 39916800,
+        constexpr double c[] = {1. / 2,         1. / 6,           1. / 24,          1. / 120,     1. / 720,
+                                1. / 5040,      1. / 40320,       1. / 362880,      1. / 3628800, 1. / 39916800,
                                 1. / 479001600, 1. / 6227020800., 1. / 87178291200.};
         return r + r * r * polynomial(r, c);
     }
@@ -159,8 +159,7 @@ template <real_number Real>
 MICA_HOST_DEVICE constexpr Real log1p_neg(Real p) {
     const auto parts = detail::split(Real(1) - p);
     const auto direct = p <= Real(0.5);
-    return detail::log_of_split(select(direct, Real(0), parts.exponent),
-                                select(direct, -p, parts.mantissa - Real(1)));
+    return detail::log_of_split(select(direct, Real(0), parts.exponent), select(direct, -p, parts.mantissa - Real(1)));
 }
 
 /// e^y. Below the smallest normal number (y < -87.3, double -708.4) exactly 0; above the range the value at its end.

@@ -10,7 +10,7 @@ namespace detail {
 /// Algorithm AS 241 (Wichura 1988, Applied Statistics 37, PPND16) for the tail probability u <= 1/2: the size of the
 /// quantile, z >= 0.
 template <real_number Real>
-    requires std::same_as<scalar_of<Real>, double>
+    requires(std::same_as<scalar_of<Real>, double>)
 MICA_HOST_DEVICE constexpr Real quantile_size(Real u) {
     constexpr double a[] = {3.3871328727963666080e0,  1.3314166789178437745e+2, 1.9715909503065514427e+3,
                             1.3731693765509461125e+4, 4.5921953931549871457e+4, 6.7265770927008700853e+4,
@@ -23,8 +23,8 @@ MICA_HOST_DEVICE constexpr Real quantile_size(Real u) {
                             3.9307895800092710610e+4,
                             2.8729085735721942674e+4,
                             5.2264952788528545610e+3};
-    constexpr double c[] = {1.42343711074968357734e0,  4.63033784615654529590e0,  5.76949722146069140550e0,
-                            3.64784832476320460504e0,  1.27045825245236838258e0,  2.41780725177450611770e-1,
+    constexpr double c[] = {1.42343711074968357734e0,  4.63033784615654529590e0, 5.76949722146069140550e0,
+                            3.64784832476320460504e0,  1.27045825245236838258e0, 2.41780725177450611770e-1,
                             2.27238449892691845833e-2, 7.74545014278341407640e-4};
     constexpr double d[] = {1.,
                             2.05319162663775882187e0,
@@ -57,9 +57,9 @@ MICA_HOST_DEVICE constexpr Real quantile_size(Real u) {
 /// Two polynomials in w = -ln(4 u (1-u)): z = (1/2 - u) C(w - 2.5) up to w = 5, z = T(sqrt(w) - 3.4) from there to
 /// w = 21 (u = 1.9e-10), where it stops. Relative error of z: C (degree 7) 2.7e-7, T (degree 5) 3.6e-7.
 template <real_number Real>
-    requires std::same_as<scalar_of<Real>, float>
+    requires(std::same_as<scalar_of<Real>, float>)
 MICA_HOST_DEVICE constexpr Real quantile_size(Real u) {
-    constexpr float c[] = {4.246626449F,     0.6976072848F,    -0.01181224372F,  -0.003548633741F,
+    constexpr float c[] = {4.246626449F,     0.6976072848F,    -0.01181224372F, -0.003548633741F,
                            0.0006147191401F, -1.158013183e-5F, -9.01104118e-6F, 8.9274453e-7F};
     constexpr float t[] = {4.574654741F,     1.423759928F,    0.005152925809F,
                            -0.002828866078F, 0.001049097567F, -0.000239227383F};

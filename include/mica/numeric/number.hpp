@@ -82,9 +82,7 @@ MICA_HOST_DEVICE constexpr To convert(From value) {
 /// The same bits under another type of the same size.
 template <arithmetic To, arithmetic From>
     requires(sizeof(To) == sizeof(From))
-MICA_HOST_DEVICE constexpr To reinterpret(From value) {
-    return __builtin_bit_cast(To, value);
-}
+MICA_HOST_DEVICE constexpr To reinterpret(From value) { return __builtin_bit_cast(To, value); }
 
 /// Lane `i` of a number; a scalar is its own only lane.
 template <arithmetic Number>

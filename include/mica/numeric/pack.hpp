@@ -129,11 +129,11 @@ struct pack {
     }
 
 #if MICA_VECTOR_EXTENSIONS
-#define MICA_PACK_OPERATOR(op)                                                                                       \
+#define MICA_PACK_OPERATOR(op)                                                                                         \
     friend pack operator op(pack a, pack b) { return pack(a.v op b.v); }
-#define MICA_PACK_COMPARISON(op)                                                                                     \
+#define MICA_PACK_COMPARISON(op)                                                                                       \
     friend mask operator op(pack a, pack b) { return {a.v op b.v}; }
-#define MICA_PACK_SHIFT(op)                                                                                          \
+#define MICA_PACK_SHIFT(op)                                                                                            \
     friend pack operator op(pack a, int places) { return pack(a.v op static_cast<T>(places)); }
     friend pack operator-(pack a) { return pack(-a.v); }
 #else
@@ -143,17 +143,17 @@ struct pack {
         for (int i = 0; i < W; ++i) result.v[i] = static_cast<T>(operation(i));
         return result;
     }
-#define MICA_PACK_OPERATOR(op)                                                                                       \
-    MICA_HOST_DEVICE friend pack operator op(pack a, pack b) {                                                       \
-        return each([&](int i) { return a[i] op b[i]; });                                                            \
+#define MICA_PACK_OPERATOR(op)                                                                                         \
+    MICA_HOST_DEVICE friend pack operator op(pack a, pack b) {                                                         \
+        return each([&](int i) { return a[i] op b[i]; });                                                              \
     }
-#define MICA_PACK_COMPARISON(op)                                                                                     \
-    MICA_HOST_DEVICE friend mask operator op(pack a, pack b) {                                                       \
-        return mask::each([&](int i) { return a[i] op b[i]; });                                                      \
+#define MICA_PACK_COMPARISON(op)                                                                                       \
+    MICA_HOST_DEVICE friend mask operator op(pack a, pack b) {                                                         \
+        return mask::each([&](int i) { return a[i] op b[i]; });                                                        \
     }
-#define MICA_PACK_SHIFT(op)                                                                                          \
-    MICA_HOST_DEVICE friend pack operator op(pack a, int places) {                                                   \
-        return each([&](int i) { return a[i] op places; });                                                          \
+#define MICA_PACK_SHIFT(op)                                                                                            \
+    MICA_HOST_DEVICE friend pack operator op(pack a, int places) {                                                     \
+        return each([&](int i) { return a[i] op places; });                                                            \
     }
     MICA_HOST_DEVICE friend pack operator-(pack a) {
         return each([&](int i) { return -a[i]; });
@@ -222,9 +222,7 @@ MICA_HOST_DEVICE inline To convert(pack<T, W> value) {
 
 template <class To, class T, int W>
     requires(sizeof(To) == sizeof(pack<T, W>))
-MICA_HOST_DEVICE inline To reinterpret(pack<T, W> value) {
-    return __builtin_bit_cast(To, value);
-}
+MICA_HOST_DEVICE inline To reinterpret(pack<T, W> value) { return __builtin_bit_cast(To, value); }
 
 template <class T, int W>
 MICA_HOST_DEVICE inline T lane(pack<T, W> value, int i) {

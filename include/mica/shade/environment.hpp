@@ -56,7 +56,8 @@ struct equirect_image {
             return c < 0 ? width - 1 : (std::min)(static_cast<std::size_t>(c), width) % width;
         };
         const auto row = [&](float r) { return r < 0 ? 0 : (std::min)(static_cast<std::size_t>(r), height - 1); };
-        const std::size_t left = column(x0), right = column(x0 + 1), top = row(y0) * width, bottom = row(y0 + 1) * width;
+        const std::size_t left = column(x0), right = column(x0 + 1), top = row(y0) * width,
+                          bottom = row(y0 + 1) * width;
         return {{{top + left, (1 - fx) * (1 - fy)},
                  {top + right, fx * (1 - fy)},
                  {bottom + left, (1 - fx) * fy},
@@ -128,8 +129,8 @@ class environment_levels {
         if (!(highest > 0)) return;
         for (std::size_t k = 1; k + 1 < K; ++k) {
             const double part = static_cast<double>(k) / (K - 1);
-            const double logarithm = (1 - part) * std::log(static_cast<double>(lowest)) +
-                                     part * std::log(static_cast<double>(highest));
+            const double logarithm =
+                (1 - part) * std::log(static_cast<double>(lowest)) + part * std::log(static_cast<double>(highest));
             radiance_[k] = minimum(static_cast<float>(std::exp(logarithm)), highest);
         }
     }

@@ -2,10 +2,10 @@
 //
 //     radiance = L_o sum_k L_k M_k / (N sum_k L_k p_k),   p_k = (E_D / D_H) w_k,   M ~ Multinomial(N, p)
 //
-// Source: KK25 Sec. 4 and 5, Eq. 15, 17, 21. L_o is the smooth image-based radiance (split sum) in the mirror direction,
-// w_k the prefiltered indicators of the levels L_k, N the facets in the pixel. What is missing to sum p = 1 are facets
-// that reflect nothing. They and level 1, whose radiance is 0 as published, are what the multinomial of the other
-// K - 1 levels leaves over, so K levels cost K - 1 binomials per vertex.
+// Source: KK25 Sec. 4 and 5, Eq. 15, 17, 21. L_o is the smooth image-based radiance (split sum) in the mirror
+// direction, w_k the prefiltered indicators of the levels L_k, N the facets in the pixel. What is missing to sum p = 1
+// are facets that reflect nothing. They and level 1, whose radiance is 0 as published, are what the multinomial of the
+// other K - 1 levels leaves over, so K levels cost K - 1 binomials per vertex.
 #pragma once
 
 #include <array>
@@ -38,9 +38,9 @@ MICA_HOST_DEVICE Real glint_ratio(const grid_vertices<Real>& vertices, Real tria
 
 /// A glittering surface.
 struct glint_material {
-    float roughness = 0.1F;            ///< GGX alpha, in [0, 1]
-    float log_density = 13;            ///< natural logarithm of the facets per unit uv^2
-    rgb<float> f0 = {0.95F, 0.93F, 0.88F}; ///< reflectance at normal incidence
+    float roughness = 0.1F;                          ///< GGX alpha, in [0, 1]
+    float log_density = 13;                          ///< natural logarithm of the facets per unit uv^2
+    rgb<float> f0 = {0.95F, 0.93F, 0.88F};           ///< reflectance at normal incidence
     float footprint_scale = default_footprint_scale; ///< size of a glint, in pixels
 };
 

@@ -66,8 +66,8 @@ MICA_HOST_DEVICE Real facet_area_within(Real cosine, Real alpha) {
     const auto antiderivative = [a2, b](Real c) {
         const Real bc = b * c;
         // atanh(x)/x near 0 is 1 + x^2/3; 1 - b^2 c^2 = 1 - c^2 + alpha^2 c^2
-        const Real ratio = bc > Real(1e-3) ? std::atanh(minimum(bc, 1 - std::numeric_limits<Real>::epsilon())) / bc
-                                           : 1 + bc * bc / 3;
+        const Real ratio =
+            bc > Real(1e-3) ? std::atanh(minimum(bc, 1 - std::numeric_limits<Real>::epsilon())) / bc : 1 + bc * bc / 3;
         return a2 * c * (1 / (1 - c * c + a2 * c * c) + ratio);
     };
     return antiderivative(Real(1)) - antiderivative(cosine);
@@ -198,8 +198,8 @@ struct bilinear_table {
 ///
 /// Built once (tens of milliseconds), then constant. Rows are uniform in perceptual roughness. Columns of E_D are
 /// uniform in n.v (1+alpha) / (n.v + alpha), which follows its rise at grazing angles whatever the roughness; those of
-/// the albedo in sqrt(n.v). Absolute error against the functions above: E_D / D_H 4e-4; albedo 1e-2, and 5e-2 at grazing angles
-/// (n.v < 0.05) of very smooth surfaces (roughness < 0.01) (tests/shade).
+/// the albedo in sqrt(n.v). Absolute error against the functions above: E_D / D_H 4e-4; albedo 1e-2, and 5e-2 at
+/// grazing angles (n.v < 0.05) of very smooth surfaces (roughness < 0.01) (tests/microfacet_test.cpp).
 class microfacet_table {
   public:
     microfacet_table() {

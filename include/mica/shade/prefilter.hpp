@@ -85,7 +85,8 @@ class texel_pyramid {
             const float radius = blocks.radius[at.y];
             if (cosine < -radius) continue; // all below the horizon
             // theta, half the angle between r and the block, is that between n and h:
-            // D = alpha^2 / (pi q^2), q = sin^2 + alpha^2 cos^2, and it changes over 2 sqrt(alpha^2 + tan^2) = 2 sqrt(q) / cos.
+            // D = alpha^2 / (pi q^2), q = sin^2 + alpha^2 cos^2, and it changes over
+            // 2 sqrt(alpha^2 + tan^2) = 2 sqrt(q) / cos.
             const float cos_square = (1 + cosine) / 2;
             const float q = 1 - cos_square + alpha * alpha * cos_square;
             const bool small = radius < widest && radius * radius * cos_square < 4 * fineness * fineness * q;
@@ -151,11 +152,11 @@ class texel_pyramid {
         if (4 * blocks.side > width) return pi; // a quarter turn and more: corners are not the farthest points
         const float right = static_cast<float>(blocks.side) / static_cast<float>(width);
         const float top = static_cast<float>(y * blocks.side) / static_cast<float>(height);
-        const float bottom =
-            static_cast<float>((std::min)((y + 1) * blocks.side, height)) / static_cast<float>(height);
+        const float bottom = static_cast<float>((std::min)((y + 1) * blocks.side, height)) / static_cast<float>(height);
         const vector3<float> middle = direction_of({right / 2, (top + bottom) / 2});
         // Left corners are as far away as right ones.
-        const float cosine = minimum(dot(middle, direction_of({right, top})), dot(middle, direction_of({right, bottom})));
+        const float cosine =
+            minimum(dot(middle, direction_of({right, top})), dot(middle, direction_of({right, bottom})));
         return std::acos(clamp(cosine, -1.F, 1.F));
     }
 

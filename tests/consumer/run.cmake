@@ -1,0 +1,15 @@
+# Configures, builds and runs the consumer in a folder of its own.
+function(run)
+    execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+if(KIND STREQUAL folder)
+    set(where -DMICA_SOURCE=${MICA_SOURCE})
+else()
+    run(${CMAKE_COMMAND} --install ${MICA_BUILD} --prefix ${WORK}/prefix)
+    set(where -DCMAKE_PREFIX_PATH=${WORK}/prefix)
+endif()
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK}/build -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${COMPILER} ${where})
+run(${CMAKE_COMMAND} --build ${WORK}/build)
+run(${WORK}/build/consumer)

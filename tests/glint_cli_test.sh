@@ -1,0 +1,121 @@
+#!/usr/bin/env bash
+# The program as its users call it:  glint_cli_test.sh GLINT errors|determinism|environments|furnace
+set -uo pipefail
+glint=$1
+part=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+fail() {
+    printf 'FAILED: %s\n' "$*"
+    failures=$((failures + 1))
+}
+
+# An equirectangular Radiance file, not run-length coded: WIDTH HEIGHT BYTES, the bytes of one texel as \x escapes.
+write_hdr() {
+    printf '#?RADIANCE\nGAMMA=1\nPRIMARIES=0 0 0 0 0 0 0 0\nFORMAT=32-bit_rle_rgbe\n\n-Y %d +X %d\n' "$2" "$1"
+    for ((i = 0; i < $1 * $2; ++i)); do printf "$3"; done
+}
+
+# Exit code 2, one line on standard error that says $1, nothing on standard output, no file left behind.
+expect_error() {
+    local says=$1 before after code
+    shift
+    before=$(ls -A)
+    "$glint" "$@" >out.txt 2>err.txt
+    code=$?
+    [ "$code" -eq 2 ] || fail "$*: exit code $code"
+    [ "$(wc -l <err.txt)" -eq 1 ] || fail "$*: $(wc -l <err.txt) lines of error"
+    grep -q -- "$says" err.txt || fail "$*: does not say '$says' but '$(cat err.txt)'"
+    [ ! -s out.txt ] || fail "$*: wrote to standard output"
+    rm -f out.txt err.txt
+    after=$(ls -A)
+    [ "$before" = "$after" ] || fail "$*: left behind: $after"
+}
+
+errors() {
+    write_hdr 8 4 '\x80\x80\x80\x81' >whole.hdr
+    head -c 150 whole.hdr >truncated.hdr
+    write_hdr 8 8 '\x80\x80\x80\x81' >square.hdr
+    printf 'not a picture at all, only text\n' >text.hdr
+    : >empty.hdr
+    mkdir folder.png folder.hdr
+    local small="--size 8x8 -o x.png"
+    expect_error 'No such file' render --env missing.hdr $small
+    expect_error 'truncated' render --env truncated.hdr $small
+    expect_error 'not an environment map' render --env square.hdr $small
+    expect_error 'not an environment map' render --env text.hdr $small
+    expect_error 'not an environment map' render --env empty.hdr $small
+    expect_error 'not an environment map' render --env folder.hdr $small
+    expect_error 'size 0x540' render --size 0x540 -o x.png
+    expect_error 'size -3x5' render --size=-3x5 -o x.png
+    expect_error 'size 64' render --size 64 -o x.png
+    expect_error 'size 99999x2' render --size 99999x2 -o x.png
+    expect_error 'roughness -0.1' render --roughness -0.1 $small
+    expect_error 'roughness nan' render --roughness nan $small
+    expect_error 'roughness 1.5' render --roughness 1.5 $small
+    expect_error 'density inf' render --density inf $small
+    expect_error 'levels 1' render --levels 1 $small
+    expect_error 'levels -4' render --levels -4 $small
+    expect_error 'levels 9' render --levels 9 $small
+    expect_error "unknown law 'poisson'" render --law poisson $small
+    expect_error "unknown light 'moon'" render --light moon $small
+    expect_error "unknown shape 'cube'" render --shape cube $small
+    expect_error 'unknown interpolation' render --interpolate nothing $small
+    expect_error 'cannot be written' render --size 8x8 -o nowhere/x.png
+    expect_error 'cannot be written' render --size 8x8 -o folder.png
+    expect_error 'cannot be written' render --size 8x8 -o x.jpg
+    expect_error 'roughness' render --roughness much $small
+    expect_error 'seed' render --seed -1 $small
+    expect_error 'threads' render --threads -1 $small
+    expect_error 'required' # no command
+    expect_error 'help' render --wings 2
+    expect_error "unknown law" furnace --law poisson
+    expect_error 'not positive' furnace --precision 0
+    "$glint" render --env whole.hdr $small --json >out.json || fail "a whole .hdr is not accepted"
+    [ "$(head -c 4 x.png | tail -c 3)" = PNG ] || fail "no PNG"
+    for field in width height law levels seconds ns_per_pixel binomials_per_pixel mean_glint mean_smooth; do
+        grep -q "\"$field\": " out.json || fail "no field $field in $(cat out.json)"
+    done
+    "$glint" --help >/dev/null || fail "--help"
+    [ "$("$glint" render $small 2>&1 >/dev/null | wc -c)" -eq 0 ] || fail "progress in a pipe"
+}
+
+determinism() {
+    for shape in sphere plane; do
+        "$glint" render --shape $shape --size 160x90 --threads 1 -o one.png >/dev/null || fail "one thread"
+        "$glint" render --shape $shape --size 160x90 --threads 2 -o two.png >/dev/null || fail "two threads"
+        cmp one.png two.png || fail "$shape: one and two threads give different pictures"
+        "$glint" render --shape $shape --size 160x90 --seed 2 -o other.png >/dev/null || fail "another seed"
+        ! cmp -s one.png other.png || fail "$shape: another seed gives the same picture"
+    done
+}
+
+environments() {
+    local maps=("${MICA_HDRI_DIR:-}"/*.hdr)
+    if [ ! -e "${maps[0]}" ]; then
+        printf 'skipped: no environment maps in MICA_HDRI_DIR=%s\n' "${MICA_HDRI_DIR:-}"
+        exit 77
+    fi
+    for map in "${maps[@]}"; do
+        for shape in sphere plane; do
+            "$glint" render --env "$map" --shape $shape --size 96x54 --levels 4 --json -o x.png >out.json ||
+                fail "$map is not accepted"
+            grep -q '"non_finite_pixels": 0,' out.json || fail "$map: $(cat out.json)"
+        done
+        head -c 200000 "$map" >truncated.hdr
+        expect_error 'truncated' render --env truncated.hdr --size 8x8 -o x2.png
+    done
+}
+
+furnace() {
+    "$glint" furnace --law exact --levels 2,4,8 --roughness 0.04,0.5 --facets 0.14,7 --json >rows.json || fail "furnace"
+    [ "$(grep -c '"passes": true' rows.json)" -eq 24 ] || fail "$(cat rows.json)"
+    ! grep -q '"passes": false' rows.json || fail "$(grep '"passes": false' rows.json)"
+}
+
+"$part"
+[ "$failures" -eq 0 ] || exit 1
+printf '%s: passed\n' "$part"

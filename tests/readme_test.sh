@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# The README shows examples/first.cpp and what it really prints:  readme_test.sh SOURCE_DIR FIRST
+set -uo pipefail
+cd "$1" || exit 1
+
+block() { # the N-th fenced block of the README
+    awk -v wanted="$1" '/^```/ { if (inside) inside = 0; else { inside = 1; ++count }; next } inside && count == wanted' README.md
+}
+
+diff <(block 1) <(grep -v '^//' examples/first.cpp) || { printf 'the program differs\n'; exit 1; }
+diff <(block 2) <("$2") || { printf 'the output differs\n'; exit 1; }
+printf 'the README shows the program and its output\n'
