@@ -24,7 +24,7 @@ expect_error() {
     local says=$1 before after code
     shift
     before=$(ls -A)
-    "$glint" "$@" >out.txt 2>err.txt
+    timeout 60 "$glint" "$@" >out.txt 2>err.txt
     code=$?
     [ "$code" -eq 2 ] || fail "$*: exit code $code"
     [ "$(wc -l <err.txt)" -eq 1 ] || fail "$*: $(wc -l <err.txt) lines of error"
@@ -42,9 +42,14 @@ errors() {
     printf 'not a picture at all, only text\n' >text.hdr
     : >empty.hdr
     mkdir folder.png folder.hdr
+    { # run-length coded: the first of 4 scanlines, and half of the second
+        printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n'
+        printf '\x02\x02\x00\x08\x88\x80\x88\x80\x88\x80\x88\x81\x02\x02\x00\x08\x88\x80'
+    } >truncated_runs.hdr
     local small="--size 8x8 -o x.png"
     expect_error 'No such file' render --env missing.hdr $small
     expect_error 'truncated' render --env truncated.hdr $small
+    expect_error 'truncated' render --env truncated_runs.hdr $small
     expect_error 'not an environment map' render --env square.hdr $small
     expect_error 'not an environment map' render --env text.hdr $small
     expect_error 'not an environment map' render --env empty.hdr $small

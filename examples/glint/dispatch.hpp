@@ -12,7 +12,7 @@
 namespace glint {
 
 /// Numbers of levels that the program is compiled for.
-using compiled_levels = std::index_sequence<2, 3, 4, 5, 6, 7, 8, 12, 16>;
+using compiled_levels = std::index_sequence<2, 3, 4, 5, 6, 7, 8>;
 
 /// Calls body(Law{}) with the law of that name.
 template <class Body>
@@ -48,7 +48,7 @@ decltype(auto) with_levels(int levels, const Body& body) {
     if (levels < 2) throw std::invalid_argument("--levels " + text + " is below 2 (one level is the dark)");
     const auto k = static_cast<std::size_t>(levels);
     if (!detail::contains(k, compiled_levels{}))
-        throw std::invalid_argument("--levels " + text + " is not compiled in (2 to 8, 12 and 16 are)");
+        throw std::invalid_argument("--levels " + text + " is not compiled in (2 to 8 are)");
     return detail::with_levels(k, body, compiled_levels{});
 }
 

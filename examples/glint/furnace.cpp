@@ -2,7 +2,8 @@
 //
 // A sphere is rendered with many seeds. The mean over all pixels is taken per seed; the seeds are independent, so
 // their spread gives the standard error, which neighbouring pixels, sharing glints, would not. Seeds are added until
-// the standard error is small enough; grazing pixels (n.wo < 0.25) are also counted by themselves.
+// the standard error is small enough, also over the grazing pixels (n.wo < 0.25), which are counted by themselves.
+// Every row has seeds of its own.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -46,7 +47,7 @@ constexpr float grazing_below = 0.25F;
 
 template <class Law, std::size_t K>
 std::array<furnace_row, 2> furnace_rows(double facets, double roughness, double precision,
-                                        const mica::microfacet_table& table) {
+                                        const mica::microfacet_table& table, std::uint32_t first_seed) {
     const auto map = white_environment();
     const auto alpha = static_cast<float>(roughness);
     const mica::prefiltered_environment<K> environment(map, mica::environment_levels<K>(map), {&alpha, 1});
@@ -67,10 +68,11 @@ std::array<furnace_row, 2> furnace_rows(double facets, double roughness, double 
     constexpr std::size_t batch = 64, most = 16384;
     // Below one facet per pixel the variance has no bound; the demand there grows with the standard error.
     const double wanted = facets >= 1 ? precision : 3 * precision;
-    while (all.count < most && (all.count < batch || all.standard_error() > wanted)) {
+    const auto precise = [&] { return all.standard_error() <= wanted && grazing.standard_error() <= wanted; };
+    while (all.count < most && (all.count < batch || !precise())) {
         std::array<std::array<double, 2>, batch> means{};
         tbb::parallel_for(std::size_t{0}, batch, [&](std::size_t i) {
-            const auto seed = static_cast<std::uint32_t>(all.count + i);
+            const std::uint32_t seed = mica::hash(first_seed, static_cast<std::uint32_t>(all.count + i));
             double sum = 0, grazing_sum = 0;
             std::size_t grazing_count = 0;
             for (const auto& point : points) {
@@ -114,7 +116,7 @@ void furnace(const furnace_options& options) {
                 with_law(options.law, [&](auto law) {
                     with_levels(levels, [&](auto k) {
                         for (const auto& row : furnace_rows<decltype(law), decltype(k)::value>(
-                                 facets, roughness, options.precision, table))
+                                 facets, roughness, options.precision, table, static_cast<std::uint32_t>(rows.size())))
                             rows.push_back(row);
                     });
                 });

@@ -22,7 +22,8 @@ struct file_closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// A file that remembers whether more was asked of it than it has: stb fills up a truncated picture with zeros.
+/// A file that remembers whether more was asked of it than it has, and then gives bytes of 255: stb would go on with
+/// zeros, which in run-length coded data are empty runs, without end.
 struct watched_file {
     std::FILE* file;
     bool ran_out = false;
@@ -30,8 +31,10 @@ struct watched_file {
     static int read(void* self, char* data, int size) {
         auto& watched = *static_cast<watched_file*>(self);
         const std::size_t got = std::fread(data, 1, static_cast<std::size_t>(size), watched.file);
-        watched.ran_out |= got == 0;
-        return static_cast<int>(got);
+        if (got > 0) return static_cast<int>(got);
+        watched.ran_out = true;
+        std::memset(data, 255, static_cast<std::size_t>(size));
+        return size;
     }
     static void skip(void* self, int bytes) { std::fseek(static_cast<watched_file*>(self)->file, bytes, SEEK_CUR); }
     static int eof(void* self) { return std::feof(static_cast<watched_file*>(self)->file); }

@@ -123,7 +123,8 @@ inline mica::environment_map procedural_environment() {
 
 /// The white furnace: radiance 1 from everywhere.
 inline mica::environment_map white_environment() {
-    return mica::environment_map(64, 32, std::vector<mica::rgb<float>>(64 * 32, {1, 1, 1}));
+    constexpr std::size_t width = 64, height = 32;
+    return mica::environment_map(width, height, std::vector<mica::rgb<float>>(width * height, {1, 1, 1}));
 }
 
 } // namespace glint

@@ -8,7 +8,7 @@ namespace glint {
 void sheet(const sheet_options& options) {
     constexpr std::size_t tile = 224, gap = 8, margin_left = 104, margin_top = 44;
     constexpr float densities[] = {10, 12, 14, 17};
-    constexpr float roughnesses[] = {0.02F, 0.08F, 0.25F};
+    constexpr float roughnesses[] = {0.04F, 0.1F, 0.3F};
     constexpr std::size_t columns = std::size(densities) + 1, rows = std::size(roughnesses);
     constexpr std::size_t block = margin_top + rows * (tile + gap);
 

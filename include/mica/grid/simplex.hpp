@@ -61,9 +61,11 @@ MICA_HOST_DEVICE constexpr std::uint32_t grid_seed(std::uint32_t seed, const tet
                 static_cast<std::uint32_t>(grid.orientation));
 }
 
-/// The seed of a vertex of a grid.
+/// The seed of a vertex of a grid. Row and column are hashed apart: chained, two columns whose hashes agree in their
+/// upper bits would share all their seeds.
 MICA_HOST_DEVICE constexpr std::uint32_t cell_seed(std::uint32_t grid, std::int32_t i, std::int32_t j) {
-    return hash(grid, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
+    return mix(hash(grid, static_cast<std::uint32_t>(i)) ^
+               hash(grid + golden_increment, static_cast<std::uint32_t>(j)));
 }
 
 } // namespace mica

@@ -5,7 +5,8 @@
 //   Comput. Simul. 46), whose expected number of tries is below 1.5 for every N and p. This pair because both are
 //   exact, neither has a set-up worth caching, and the cost is bounded whatever the parameters.
 // Draws: one of the caller's stream when it can fork (uniform_stream), an unbounded number otherwise.
-// Output: integers, successes + failures = trials, exact up to 2^53 (as Real: to one ulp beyond 2^24 for float).
+// Output: integers, successes + failures = trials, exact up to 2^53 (as Real: to one ulp beyond 2^24 for float). More
+//   trials are those of the nearest double.
 //   Real N: trials = floor(N) + (xi' < N - floor(N)).
 // Error: the resolution of the uniforms, 2^-31 at small xi, where many successes lie. Inside it computes in double.
 // Departures: BTRS accepts against the saddle-point form of the probability (Loader 2000, "Fast and accurate
@@ -14,7 +15,6 @@
 // Not for a GPU: doubles and a loop. On a pack it runs lane by lane.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "binomial_law.hpp"
@@ -121,7 +121,7 @@ double exact_binomial_successes(double n, double p, Uniform& xi) {
 
 } // namespace detail
 
-/// Exact binomial counts. trials up to 2^53 (more counts as 2^53).
+/// Exact binomial counts.
 struct exact_binomial {
     static constexpr bool integer_counts = true;
 
@@ -145,9 +145,8 @@ struct exact_binomial {
   private:
     template <class Scalar, class Uniform>
     static counts<Scalar> one_lane(Scalar trials, Scalar probability, Uniform&& xi) {
-        const double real_trials = (std::min)(static_cast<double>(trials), 0x1p53);
-        double n = std::floor(real_trials);
-        const double fraction = real_trials - n;
+        double n = std::floor(static_cast<double>(trials));
+        const double fraction = static_cast<double>(trials) - n;
         if (fraction > 0 && static_cast<double>(xi()) < fraction) n += 1;
         const double successes = detail::exact_binomial_successes(n, static_cast<double>(probability), xi);
         return {static_cast<Scalar>(successes), static_cast<Scalar>(n - successes)};

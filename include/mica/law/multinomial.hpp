@@ -5,8 +5,9 @@
 //
 // Every node gives its trials to its two halves by one binomial with the conditional probability of a half (KK25
 // Sec. 6). Probabilities may sum to less than 1: the rest of the trials goes to an implicit category "none", split
-// off first and not returned. K categories whose probabilities sum to 1 cost K - 1 binomials, otherwise K; whoever
-// has a dimmest or default category leaves it out and pays K - 1 in either case.
+// off first and not returned. (A sum within 4 epsilon of 1 is 1: rounding must not cost a trial.) K categories whose
+// probabilities sum to 1 cost K - 1 binomials, otherwise K; whoever has a dimmest or default category leaves it out
+// and pays K - 1 in either case.
 //
 // - With a law of integer counts, real trials are rounded to an integer once, at the root, and the counts (with
 //   "none") sum to it exactly, up to 2^24 trials in float and to one ulp beyond. The dual-gated law dithers
@@ -59,9 +60,10 @@ MICA_HOST_DEVICE constexpr Real categorised_trials(Real trials, Real total, Unif
         auto&& rounding = node_stream(stream, 0U);
         trials = dithered(trials, rounding());
     }
-    const auto complete = total >= Real(1);
+    using Scalar = scalar_of<Real>;
+    const auto complete = total >= Real(1 - 4 * std::numeric_limits<Scalar>::epsilon());
     if (all(complete)) return trials;
-    return select(complete, trials, Law{}(trials, total, node_stream(stream, 1U)).successes);
+    return select(complete, trials, Law{}(trials, minimum(total, Real(1)), node_stream(stream, 1U)).successes);
 }
 
 /// Nodes are numbered as in a heap: the root of the categories is 2, the children of m are 2m and 2m + 1.

@@ -42,7 +42,7 @@ struct equirect_image {
 
     const Texel& at(std::size_t x, std::size_t y) const { return texels[y * width + x]; }
 
-    /// The four texels around a direction and their bilinear weights. Wraps around in u, stops at the poles.
+    /// The four texels around a direction and their bilinear weights. Beyond a pole lies the same row, half way round.
     struct tap {
         std::size_t index;
         float weight;
@@ -52,16 +52,16 @@ struct equirect_image {
         const float x = point.u * static_cast<float>(width) - 0.5F, y = point.v * static_cast<float>(height) - 0.5F;
         const float x0 = std::floor(x), y0 = std::floor(y);
         const float fx = x - x0, fy = y - y0;
-        const auto column = [&](float c) {
-            return c < 0 ? width - 1 : (std::min)(static_cast<std::size_t>(c), width) % width;
+        const auto index = [this](float column, float row) {
+            const bool beyond_pole = row < 0 || row > static_cast<float>(height - 1);
+            const std::size_t i = column < 0 ? width - 1 : static_cast<std::size_t>(column);
+            const std::size_t j = row < 0 ? 0 : (std::min)(static_cast<std::size_t>(row), height - 1);
+            return j * width + (beyond_pole ? i + width / 2 : i) % width;
         };
-        const auto row = [&](float r) { return r < 0 ? 0 : (std::min)(static_cast<std::size_t>(r), height - 1); };
-        const std::size_t left = column(x0), right = column(x0 + 1), top = row(y0) * width,
-                          bottom = row(y0 + 1) * width;
-        return {{{top + left, (1 - fx) * (1 - fy)},
-                 {top + right, fx * (1 - fy)},
-                 {bottom + left, (1 - fx) * fy},
-                 {bottom + right, fx * fy}}};
+        return {{{index(x0, y0), (1 - fx) * (1 - fy)},
+                 {index(x0 + 1, y0), fx * (1 - fy)},
+                 {index(x0, y0 + 1), (1 - fx) * fy},
+                 {index(x0 + 1, y0 + 1), fx * fy}}};
     }
 };
 

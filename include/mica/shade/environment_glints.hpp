@@ -19,7 +19,8 @@ namespace mica {
 /// Glint radiance over smooth radiance in one pixel, >= 0, with mean 1.
 ///
 /// levels: L_1 = 0 .. L_K. indicators: w_1 .. w_K of the pixel's lobe. visible_fraction: E_D / D_H.
-/// 1, the mean, where the pixel has no facets to speak of (a degenerate footprint: trials < 1e-30) or sees only black.
+/// 1, the mean, where there is nothing to count: a degenerate footprint, black all around, or so few facets towards so
+/// little light that their expected flashes are below 1e-30.
 template <class Law, std::size_t K, scalar_number Real>
 MICA_HOST_DEVICE Real glint_ratio(const grid_vertices<Real>& vertices, Real trials, const std::array<Real, K>& levels,
                                   const std::array<Real, K>& indicators, Real visible_fraction) {
@@ -29,7 +30,7 @@ MICA_HOST_DEVICE Real glint_ratio(const grid_vertices<Real>& vertices, Real tria
         probabilities[k - 1] = visible_fraction * indicators[k];
         expected += levels[k] / levels[K - 1] * probabilities[k - 1];
     }
-    if (!(trials >= Real(1e-30) && levels[K - 1] > 0 && expected > 0)) return 1;
+    if (!(levels[K - 1] > 0 && trials * expected >= Real(1e-30))) return 1;
     const auto counts = distributed_multinomial<K - 1, Law>{}(vertices, probabilities);
     Real reflected = 0;
     for (std::size_t k = 1; k < K; ++k) reflected += levels[k] / levels[K - 1] * counts[k - 1];

@@ -1,0 +1,322 @@
+// tests/statistics.hpp: the statistics that the tests share.
+//
+// Every statistical test of the suite compares one p-value with significance(): a family error of 1e-6 split by
+// Sidak over at most tests_in_family tests, so that the whole suite, run with other seeds, would fail once in a
+// million times. References come from Boost.Math, never from the code under test.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <span>
+#include <string>
+#include <vector>
+
+// g++ 12 cannot see that Boost assigns its error results wherever it reads them.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace statistics {
+
+inline constexpr double family_error = 1e-6;
+
+/// No fewer than the p-values that all test files together compare with significance().
+inline constexpr int tests_in_family = 2000;
+
+/// The error of each of `tests` independent tests whose family has the error `family`: 1 - (1-family)^(1/tests).
+inline double sidak_share(double family, int tests) { return -std::expm1(std::log1p(-family) / tests); }
+
+/// The p-value of the smallest of `tests` independent p-values.
+inline double sidak_smallest(double smallest, int tests) {
+    return smallest < 1 ? -std::expm1(tests * std::log1p(-smallest)) : 1;
+}
+
+/// The smallest p-value that a passing test may have.
+inline double significance() { return sidak_share(family_error, tests_in_family); }
+
+/// Mean and variance of a sample, by Welford's updates. A NaN in the sample makes both NaN.
+class running_moments {
+  public:
+    void add(double x) {
+        count_ += 1;
+        const double from_mean = x - mean_;
+        mean_ += from_mean / count_;
+        squares_ += from_mean * (x - mean_);
+    }
+
+    double count() const { return count_; }
+    double mean() const { return mean_; }
+    double variance() const { return squares_ / (count_ - 1); }
+    double standard_error() const { return std::sqrt(variance() / count_); }
+
+  private:
+    double count_ = 0;
+    double mean_ = 0;
+    double squares_ = 0;
+};
+
+/// The covariance of two variables.
+class running_covariance {
+  public:
+    void add(double x, double y) {
+        count_ += 1;
+        const double x_from_mean = x - x_mean_;
+        x_mean_ += x_from_mean / count_;
+        y_mean_ += (y - y_mean_) / count_;
+        products_ += x_from_mean * (y - y_mean_);
+    }
+
+    double covariance() const { return products_ / (count_ - 1); }
+
+  private:
+    double count_ = 0;
+    double x_mean_ = 0;
+    double y_mean_ = 0;
+    double products_ = 0;
+};
+
+/// Two-sided p-value of a standard normal statistic; 0 where it is NaN.
+inline double normal_p_value(double z) {
+    if (!std::isfinite(z)) return 0;
+    return 2 * cdf(complement(boost::math::normal(), std::abs(z)));
+}
+
+/// p-value of a sample mean whose expectation and single-draw standard deviation are known.
+inline double mean_p_value(const running_moments& sample, double mean, double deviation) {
+    return normal_p_value((sample.mean() - mean) / (deviation / std::sqrt(sample.count())));
+}
+
+/// p-value of a sample variance of a law that is nearly normal: the variance of the estimate is 2 sigma^4 / n.
+inline double variance_p_value(const running_moments& sample, double variance) {
+    return normal_p_value((sample.variance() / variance - 1) / std::sqrt(2 / (sample.count() - 1)));
+}
+
+/// Two-sided exact p-value of `observed` successes in `draws` trials of the given probability.
+inline double binomial_p_value(double observed, double draws, double probability) {
+    if (!(probability > 0)) return observed > 0 ? 0 : 1;
+    if (!(probability < 1)) return observed < draws ? 0 : 1;
+    const boost::math::binomial law(draws, probability);
+    const double at_most = cdf(law, observed);
+    const double at_least = observed > 0 ? cdf(complement(law, observed - 1)) : 1;
+    return (std::min)(1., 2 * (std::min)(at_most, at_least));
+}
+
+/// Adjacent cells [first, last) of a histogram that are judged as one.
+struct pool {
+    std::size_t first;
+    std::size_t last;
+};
+
+inline double sum(std::span<const double> values, pool range) {
+    double total = 0;
+    for (std::size_t i = range.first; i < range.last; ++i) total += values[i];
+    return total;
+}
+
+/// Pools adjacent cells until each pool expects `least` draws. The tails are pooled first, each from its own end
+/// inwards: pooling sorted cells would merge the two, and draws moved from one tail to the other would not be seen.
+inline std::vector<pool> pooled(std::span<const double> probabilities, double draws, double least) {
+    const std::size_t size = probabilities.size();
+    std::size_t lower = 0;
+    for (double expected = 0; lower < size && expected < least;) expected += draws * probabilities[lower++];
+    std::size_t upper = size;
+    for (double expected = 0; upper > lower && expected < least;) expected += draws * probabilities[--upper];
+
+    std::vector<pool> pools{{0, lower}};
+    std::size_t first = lower;
+    double expected = 0;
+    for (std::size_t i = lower; i < upper; ++i) {
+        expected += draws * probabilities[i];
+        if (expected < least) continue;
+        pools.push_back({first, i + 1});
+        first = i + 1;
+        expected = 0;
+    }
+    pools.back().last = upper; // what is left of the inner cells joins the last pool
+    if (upper < size) pools.push_back({upper, size});
+    return pools;
+}
+
+/// The smallest expectation of a pool, from which on the chi-square distribution is a good stand-in.
+inline constexpr double least_expected = 10;
+
+/// How many p-values goodness_of_fit() takes the smallest of.
+inline constexpr int lenses = 5;
+
+struct fit {
+    double p_value;
+    double chi_square;
+    int degrees;
+    std::size_t worst_cell; ///< first cell of the pool farthest from its expectation
+};
+
+/// Upper tail of the chi-square distribution.
+inline double chi_square_p_value(double chi_square, int degrees) {
+    return degrees < 1 ? 1 : cdf(complement(boost::math::chi_squared(degrees), chi_square));
+}
+
+/// Whether draws follow cells of known probability, adjacent cells being neighbours. Five lenses: chi-square over the
+/// pools, an exact test of the number of draws in either tail's pool, and of the farthest cell reached in either
+/// tail. p-value 0 where a cell of probability 0 was hit or the probabilities do not sum to 1.
+inline fit goodness_of_fit(std::span<const double> probabilities, std::span<const double> observed) {
+    const pool everything{0, probabilities.size()};
+    const double draws = sum(observed, everything);
+    const bool normalised = std::abs(sum(probabilities, everything) - 1) <= 1e-8;
+    if (!normalised || !(draws > 0) || observed.size() != probabilities.size()) return {0, 0, 0, 0};
+    for (std::size_t i = 0; i < observed.size(); ++i)
+        if (observed[i] > 0 && !(probabilities[i] > 0)) return {0, 0, 0, i};
+
+    const auto pools = pooled(probabilities, draws, least_expected);
+    fit result{1, 0, static_cast<int>(pools.size()) - 1, 0};
+    double worst = 0;
+    for (const pool range : pools) {
+        const double expected = draws * sum(probabilities, range);
+        const double from_expected = sum(observed, range) - expected;
+        const double term = from_expected * from_expected / expected;
+        result.chi_square += term;
+        if (term > worst) result.worst_cell = range.first;
+        worst = (std::max)(worst, term);
+    }
+
+    std::size_t lowest = 0;
+    while (!(observed[lowest] > 0)) ++lowest;
+    std::size_t highest = observed.size();
+    while (!(observed[highest - 1] > 0)) --highest;
+    const auto tail = [&](pool range) {
+        return binomial_p_value(sum(observed, range), draws, (std::min)(1., sum(probabilities, range)));
+    };
+    const auto reached = [&](pool range) {
+        return sidak_smallest((std::min)(1., sum(probabilities, range)), static_cast<int>(draws));
+    };
+    const double smallest =
+        (std::min)({chi_square_p_value(result.chi_square, result.degrees), tail(pools.front()), tail(pools.back()),
+                    reached({0, lowest + 1}), reached({highest - 1, observed.size()})});
+    result.p_value = sidak_smallest(smallest, lenses);
+    return result;
+}
+
+/// The chance that goodness_of_fit() passes `draws` draws whose cells have the probabilities `actual` instead of
+/// `stated`: an upper bound, from its chi-square lens alone.
+inline double chance_of_missing(std::span<const double> stated, std::span<const double> actual, double draws) {
+    const auto pools = pooled(stated, draws, least_expected);
+    const int degrees = static_cast<int>(pools.size()) - 1;
+    if (degrees < 1) return 1;
+    double noncentrality = 0;
+    for (const pool range : pools) {
+        const double difference = sum(actual, range) - sum(stated, range);
+        noncentrality += draws * difference * difference / sum(stated, range);
+    }
+    if (!(noncentrality > 0)) return 1;
+    const double critical =
+        quantile(complement(boost::math::chi_squared(degrees), sidak_share(significance(), lenses)));
+    return cdf(boost::math::non_central_chi_squared(degrees, noncentrality), critical);
+}
+
+/// A histogram of whole numbers: cell i holds [first + i width, first + (i+1) width), the first cell also what is
+/// below, the last also what is above, down and up to the ends of the support.
+class histogram {
+  public:
+    histogram(double first, double width, std::size_t cells, double largest)
+        : first_(first), width_(width), largest_(largest), observed_(cells, 0.) {}
+
+    void add(double x) {
+        if (!(x >= 0 && x <= largest_ && x == std::floor(x))) {
+            outside_ += 1;
+            return;
+        }
+        const double cell = std::clamp((x - first_) / width_, 0., static_cast<double>(observed_.size() - 1));
+        observed_[static_cast<std::size_t>(cell)] += 1;
+    }
+
+    /// Draws that were no whole number in [0, largest].
+    double outside() const { return outside_; }
+    std::span<const double> observed() const { return observed_; }
+
+  private:
+    double first_;
+    double width_;
+    double largest_;
+    double outside_ = 0;
+    std::vector<double> observed_;
+};
+
+/// P(X <= k) for integer trials, which may be 0.
+inline double binomial_cdf(double trials, double probability, double k) {
+    if (k < 0) return 0;
+    return k >= trials ? 1 : cdf(boost::math::binomial(trials, probability), k);
+}
+
+/// P(X > k)
+inline double binomial_survival(double trials, double probability, double k) {
+    if (k < 0) return 1;
+    return k >= trials ? 0 : cdf(complement(boost::math::binomial(trials, probability), k));
+}
+
+/// P(low <= X < high), from the tail that it lies in, so that it has digits in both.
+inline double binomial_interval(double trials, double probability, double low, double high) {
+    if (low <= 0 && high > trials) return 1;
+    if (low < trials * probability)
+        return binomial_cdf(trials, probability, high - 1) - binomial_cdf(trials, probability, low - 1);
+    return binomial_survival(trials, probability, low - 1) - binomial_survival(trials, probability, high - 1);
+}
+
+/// The cells in which binomial counts of `trials` (real: floor(trials) or one more, with that mean) are judged: up to
+/// some 150, an eighth of a standard deviation wide where that is more than 1, nine standard deviations to each side.
+class binomial_cells {
+  public:
+    binomial_cells(double trials, double probability) : trials_(trials) {
+        const double mean = trials * probability;
+        const double deviation = std::sqrt(mean * (1 - probability));
+        width_ = (std::max)(1., std::floor(deviation / 8));
+        first_ = (std::max)(0., std::floor(mean - 9 * deviation));
+        const double last = (std::min)(std::ceil(trials), std::ceil(mean + 9 * deviation) + 20);
+        size_ = static_cast<std::size_t>(std::floor((last - first_) / width_)) + 1;
+        probabilities_ = of(probability);
+    }
+
+    /// The probabilities of the same cells under another success probability.
+    std::vector<double> of(double probability) const {
+        const double whole = std::floor(trials_);
+        const double fraction = trials_ - whole;
+        std::vector<double> result(size_);
+        for (std::size_t i = 0; i < size_; ++i) {
+            const double low = i == 0 ? 0 : first_ + static_cast<double>(i) * width_;
+            const double high = i + 1 == size_ ? trials_ + 2 : first_ + static_cast<double>(i + 1) * width_;
+            result[i] = (1 - fraction) * binomial_interval(whole, probability, low, high);
+            if (fraction > 0) result[i] += fraction * binomial_interval(whole + 1, probability, low, high);
+        }
+        return result;
+    }
+
+    const std::vector<double>& probabilities() const { return probabilities_; }
+    histogram empty() const { return histogram(first_, width_, size_, std::ceil(trials_)); }
+
+    /// The first whole number of a cell.
+    double start_of(std::size_t cell) const { return first_ + static_cast<double>(cell) * width_; }
+
+  private:
+    double trials_;
+    double width_;
+    double first_;
+    std::size_t size_;
+    std::vector<double> probabilities_;
+};
+
+/// goodness_of_fit() of counts, p-value 0 where one was outside the support.
+inline fit goodness_of_fit(const binomial_cells& cells, const histogram& counts) {
+    fit result = goodness_of_fit(cells.probabilities(), counts.observed());
+    if (counts.outside() > 0) result.p_value = 0;
+    return result;
+}
+
+} // namespace statistics
