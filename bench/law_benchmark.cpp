@@ -61,7 +61,7 @@ void run(benchmark::State& state, const Body& body) {
     constexpr std::size_t lanes = mica::lanes_of<Real>;
     for (auto _ : state)
         for (std::size_t i = 0; i < parameter_sets; i += lanes) benchmark::DoNotOptimize(body(i));
-    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * parameter_sets));
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(parameter_sets));
 }
 
 /// What no law can be faster than: one uniform and its normal quantile.

@@ -84,7 +84,7 @@ class texel_pyramid {
             const block& b = blocks.blocks[at.y * blocks.width + at.x];
             const float cosine = clamp(dot(r, b.direction), -1.F, 1.F);
             const float radius = blocks.radius[at.y];
-            if (cosine < -radius) continue; // all below the horizon
+            if (cosine < -2 * radius) continue; // all below the horizon, wherever in the block its light is
             // theta, half the angle between r and the block, is that between n and h:
             // D = alpha^2 / (pi q^2), q = sin^2 + alpha^2 cos^2, and it changes over
             // 2 sqrt(alpha^2 + tan^2) = 2 sqrt(q) / cos.
