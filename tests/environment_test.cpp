@@ -532,4 +532,23 @@ TEST(Prefilter, BadRoughnessesFail) {
     EXPECT_NO_THROW(build({0.F, 0.2F}));
 }
 
+/// The blocks' directions are sums of radiance; they must neither overflow nor vanish.
+TEST(Prefilter, ScalesWithTheMap) {
+    const auto filtered_at = [](float scale) {
+        std::vector<colour> texels;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 128; ++x) {
+                const float radiance = scale * (1 + (x < 64 ? 3.F : 0.F) + (y < 32 ? 1.F : 0.F));
+                texels.push_back({radiance, radiance, radiance});
+            }
+        const mica::environment_map map(128, 64, std::move(texels));
+        const float roughness = 0.3F;
+        const mica::prefiltered_environment<2> filtered(map, mica::environment_levels<2>(map, 1e-35F), {&roughness, 1});
+        return filtered({0.6F, 0.64F, 0.48F}, roughness).radiance.r / scale;
+    };
+    const float expected = filtered_at(1);
+    for (const float scale : {1e-30F, 1e-20F, 1e10F, 1e20F, 1e29F})
+        EXPECT_NEAR(filtered_at(scale), expected, 1e-4) << scale;
+}
+
 } // namespace

@@ -24,7 +24,7 @@ expect_error() {
     local says=$1 before after code
     shift
     before=$(ls -A)
-    timeout 60 "$glint" "$@" >out.txt 2>err.txt
+    timeout 30 "$glint" "$@" >out.txt 2>err.txt
     code=$?
     [ "$code" -eq 2 ] || fail "$*: exit code $code"
     [ "$(wc -l <err.txt)" -eq 1 ] || fail "$*: $(wc -l <err.txt) lines of error"
@@ -50,6 +50,11 @@ errors() {
     expect_error 'No such file' render --env missing.hdr $small
     expect_error 'truncated' render --env truncated.hdr $small
     expect_error 'truncated' render --env truncated_runs.hdr $small
+    for length in 1 5 11 20 30 45 60 80; do # within the header
+        head -c $length whole.hdr >cut.hdr
+        expect_error 'cut.hdr' render --env cut.hdr $small
+    done
+    expect_error 'env is empty' render --env '' $small
     expect_error 'not an environment map' render --env square.hdr $small
     expect_error 'not an environment map' render --env text.hdr $small
     expect_error 'not an environment map' render --env empty.hdr $small
@@ -84,6 +89,8 @@ errors() {
     for field in width height law levels seconds ns_per_pixel binomials_per_pixel mean_glint mean_smooth; do
         grep -q "\"$field\": " out.json || fail "no field $field in $(cat out.json)"
     done
+    timeout -s INT 1 "$glint" render --size 4096x4096 --threads 1 -o interrupted.png >/dev/null
+    [ -z "$(ls | grep interrupted)" ] || fail "an interrupt leaves $(ls | grep interrupted)"
     "$glint" --help >/dev/null || fail "--help"
     [ "$("$glint" render $small 2>&1 >/dev/null | wc -c)" -eq 0 ] || fail "progress in a pipe"
 }

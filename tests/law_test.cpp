@@ -770,4 +770,14 @@ TEST(DualGatedBinomial, FloatAgreesWithDouble) {
     }
 }
 
+/// Constant uniforms never satisfy the rejection; the law ends all the same.
+TEST(ExactBinomial, EndsOnScriptedUniforms) {
+    for (const float constant : {0x1p-32F, 0x1p-24F, 0.5F, 1 - 0x1p-24F})
+        for (const float trials : {1.F, 100.F, 1000.F, 1e7F}) {
+            const auto counts = exact_binomial{}(trials, 0.3F, [&] { return constant; });
+            EXPECT_TRUE(counts.successes >= 0 && counts.failures >= 0);
+            EXPECT_EQ(counts.successes + counts.failures, trials);
+        }
+}
+
 } // namespace

@@ -560,4 +560,15 @@ TEST(Multinomial, DynamicTakesTheShorterSpan) {
                                                        std::span<double>());
 }
 
+/// Spans of floats and vectors, and trials of any type that converts.
+TEST(Multinomial, TakesWhatAUserHasAtHand) {
+    std::vector<float> probabilities{0.25F, 0.5F, 0.25F}, counts(3);
+    using dynamic = mica::multinomial<std::dynamic_extent, mica::exact_binomial>;
+    dynamic{}(10.F, std::span<float>(probabilities), mica::uniform_stream<float>{3}, std::span<float>(counts));
+    const auto fixed = mica::multinomial<3, mica::exact_binomial>{}(10, std::array{0.25F, 0.5F, 0.25F},
+                                                                    mica::uniform_stream<float>{3});
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(counts[k], fixed[k]);
+    EXPECT_EQ(counts[0] + counts[1] + counts[2], 10);
+}
+
 } // namespace

@@ -672,4 +672,29 @@ TEST(Pack, ConvertsTowardsZeroAndReinterpretsBits) {
     for (int i = 0; i < 4; ++i) EXPECT_EQ(wide[i], 4294967295.);
 }
 
+/// log2 and exp2 share their polynomials with log and exp; their own arithmetic is tested here.
+template <class Real>
+void expect_binary_logarithm_and_exponential(double least, double most, double absolute) {
+    const double ulp = static_cast<double>(std::numeric_limits<Real>::epsilon());
+    for (double x = least; x <= most; x += (most - least) / 100003) {
+        const auto argument = static_cast<Real>(x);
+        const auto exact = std::exp2(static_cast<long double>(argument));
+        EXPECT_LE(std::abs(static_cast<long double>(mica::exp2(argument)) / exact - 1), 2 * ulp) << x;
+        const auto power = static_cast<Real>(exact);
+        const auto logarithm = std::log2(static_cast<long double>(power));
+        EXPECT_LE(std::abs(static_cast<long double>(mica::log2(power)) - logarithm),
+                  std::fmax(absolute, 2 * ulp * static_cast<double>(std::abs(logarithm))))
+            << x;
+    }
+    for (int k = static_cast<int>(least); k <= static_cast<int>(most); ++k) {
+        EXPECT_EQ(mica::exp2(static_cast<Real>(k)), std::ldexp(Real(1), k));
+        EXPECT_EQ(mica::log2(std::ldexp(Real(1), k)), static_cast<Real>(k));
+    }
+    EXPECT_EQ(mica::exp2(static_cast<Real>(2 * least)), 0);
+    EXPECT_EQ(mica::exp2(static_cast<Real>(2 * most)), std::ldexp(Real(1), static_cast<int>(most)));
+}
+
+TEST(BinaryLogarithmAndExponential, Float) { expect_binary_logarithm_and_exponential<float>(-126, 127, 7e-8); }
+TEST(BinaryLogarithmAndExponential, Double) { expect_binary_logarithm_and_exponential<double>(-1022, 1023, 3e-16); }
+
 } // namespace

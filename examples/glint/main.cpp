@@ -1,4 +1,5 @@
 // glint: the command-line face of mica.
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <optional>
@@ -12,8 +13,12 @@
 
 namespace {
 
-/// The first line of a message; errors are one line.
-std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+/// Errors are one line, whatever names they quote.
+std::string one_line(std::string text) {
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
 
 int run(int argc, char** argv) {
     CLI::App app("Glints by mica: how many facets flash, in every pixel, at constant cost.", "glint");
@@ -69,16 +74,19 @@ int run(int argc, char** argv) {
     } catch (const CLI::Success& asked) { // --help, --version
         return app.exit(asked);
     } catch (const CLI::ParseError& error) {
-        throw std::invalid_argument(first_line(error.what()) + " (see glint --help)");
+        throw std::invalid_argument(one_line(error.what()) + " (see glint --help)");
     }
 
-    if (threads < 0) throw std::invalid_argument("--threads " + std::to_string(threads) + " is negative");
+    if (threads < 0 || threads > 1024)
+        throw std::invalid_argument("--threads " + std::to_string(threads) + " is not in [0, 1024]");
+    if (render_command->count("--env") > 0 && render.environment.empty()) throw std::invalid_argument("--env is empty");
     std::optional<tbb::global_control> limit;
     if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 
     if (*render_command) glint::render(render);
     if (*sheet_command) glint::sheet(sheet);
     if (*furnace_command) glint::furnace(furnace);
+    if (std::fflush(stdout) != 0) throw std::runtime_error("standard output cannot be written");
     return 0;
 }
 
@@ -88,7 +96,7 @@ int main(int argc, char** argv) {
     try {
         return run(argc, argv);
     } catch (const std::exception& error) {
-        std::fprintf(stderr, "glint: %s\n", first_line(error.what()).c_str());
+        std::fprintf(stderr, "glint: %s\n", one_line(error.what()).c_str());
         return 2;
     }
 }

@@ -22,8 +22,8 @@ struct file_closer {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-/// A file that remembers whether more was asked of it than it has, and then gives bytes of 255: stb would go on with
-/// zeros, which in run-length coded data are empty runs, without end.
+/// A file that remembers whether more was asked of it than it has, and then gives empty lines, which end a header and
+/// are runs in run-length coded data. Left alone, stb goes on with zeros, which end neither.
 struct watched_file {
     std::FILE* file;
     bool ran_out = false;
@@ -33,7 +33,7 @@ struct watched_file {
         const std::size_t got = std::fread(data, 1, static_cast<std::size_t>(size), watched.file);
         if (got > 0) return static_cast<int>(got);
         watched.ran_out = true;
-        std::memset(data, 255, static_cast<std::size_t>(size));
+        std::memset(data, '\n', static_cast<std::size_t>(size));
         return size;
     }
     static void skip(void* self, int bytes) { std::fseek(static_cast<watched_file*>(self)->file, bytes, SEEK_CUR); }
@@ -53,7 +53,8 @@ std::uint8_t srgb_byte(float linear) {
 } // namespace
 
 mica::environment_map read_environment(const std::string& path) {
-    if (std::filesystem::is_directory(path)) throw problem(path, "is a folder, not an environment map");
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) throw problem(path, "is a folder, not an environment map");
     const std::unique_ptr<std::FILE, file_closer> file(std::fopen(path.c_str(), "rb"));
     if (!file) throw problem(path, std::strerror(errno));
 
@@ -69,7 +70,7 @@ mica::environment_map read_environment(const std::string& path) {
         stbi_loadf_from_callbacks(&callbacks, &watched, &width, &height, &bands, 3), &stbi_image_free);
     if (watched.ran_out) throw problem(path, "is truncated");
     if (!data) throw problem(path, std::string("cannot be read: ") + stbi_failure_reason());
-    if (width != 2 * height)
+    if (width != 2 * height || height < 1)
         throw problem(path, "is not an environment map: " + std::to_string(width) + "x" + std::to_string(height) +
                                 " is not twice as wide as high");
 
@@ -120,29 +121,37 @@ void draw_text(srgb_picture& picture, const std::string& text, std::size_t left,
 }
 
 png_file::png_file(std::string path) : path_(std::move(path)) {
+    std::error_code ignored;
     if (!path_.ends_with(".png")) throw problem(path_, "cannot be written: pictures are written as .png");
-    if (std::filesystem::is_directory(path_)) throw problem(path_, "cannot be written: is a folder");
-    unfinished_ = path_ + "." + std::to_string(::getpid()) + ".part";
-    const std::unique_ptr<std::FILE, file_closer> file(std::fopen(unfinished_.c_str(), "wb"));
+    if (std::filesystem::is_directory(path_, ignored)) throw problem(path_, "cannot be written: is a folder");
+    const std::string unfinished = unfinished_name();
+    { const file_handle file = open_to_write(unfinished); }
+    std::remove(unfinished.c_str());
+}
+
+std::string png_file::unfinished_name() const { return path_ + "." + std::to_string(::getpid()) + ".part"; }
+
+png_file::file_handle png_file::open_to_write(const std::string& name) const {
+    file_handle file(std::fopen(name.c_str(), "wb"), &std::fclose);
     if (!file) throw problem(path_, std::string("cannot be written: ") + std::strerror(errno));
+    return file;
 }
 
-png_file::~png_file() {
-    if (!unfinished_.empty()) std::remove(unfinished_.c_str());
-}
-
-void png_file::save(const srgb_picture& picture) {
+void png_file::save(const srgb_picture& picture) const {
     const auto write = [](void* file, void* data, int size) {
         std::fwrite(data, 1, static_cast<std::size_t>(size), static_cast<std::FILE*>(file));
     };
-    std::unique_ptr<std::FILE, file_closer> file(std::fopen(unfinished_.c_str(), "wb"));
-    const bool encoded = file && stbi_write_png_to_func(write, file.get(), static_cast<int>(picture.width),
-                                                        static_cast<int>(picture.height), 3, picture.bytes.data(), 0);
+    const std::string unfinished = unfinished_name();
+    file_handle file = open_to_write(unfinished);
+    const bool encoded = stbi_write_png_to_func(write, file.get(), static_cast<int>(picture.width),
+                                                static_cast<int>(picture.height), 3, picture.bytes.data(), 0) != 0;
     const bool written = encoded && std::fflush(file.get()) == 0 && std::ferror(file.get()) == 0;
     file.reset();
-    if (!written || std::rename(unfinished_.c_str(), path_.c_str()) != 0)
-        throw problem(path_, std::string("cannot be written: ") + std::strerror(errno));
-    unfinished_.clear();
+    if (!written || std::rename(unfinished.c_str(), path_.c_str()) != 0) {
+        const std::string reason = std::strerror(errno);
+        std::remove(unfinished.c_str());
+        throw problem(path_, "cannot be written: " + reason);
+    }
 }
 
 } // namespace glint

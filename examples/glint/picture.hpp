@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdio>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -35,20 +37,21 @@ void tone_map(const radiance_picture& from, float exposure, srgb_picture& to, st
 void draw_text(srgb_picture& picture, const std::string& text, std::size_t left, std::size_t top, std::size_t scale,
                std::uint8_t grey);
 
-/// A PNG file that appears under its name only when it is whole. The constructor throws std::runtime_error where the
-/// file cannot be written, so that nobody renders for nothing; without save() nothing is left behind.
+/// A PNG file that appears under its name only when it is whole.
 class png_file {
   public:
+    /// Throws std::runtime_error where the file cannot be written, so that nobody renders for nothing. Leaves nothing.
     explicit png_file(std::string path);
-    ~png_file();
-    png_file(const png_file&) = delete;
-    png_file& operator=(const png_file&) = delete;
 
-    void save(const srgb_picture& picture);
-    const std::string& path() const { return path_; }
+    void save(const srgb_picture& picture) const;
 
   private:
-    std::string path_, unfinished_;
+    using file_handle = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+    std::string unfinished_name() const;
+    file_handle open_to_write(const std::string& name) const;
+
+    std::string path_;
 };
 
 } // namespace glint

@@ -76,7 +76,7 @@ void render(const render_options& options) {
             const stopwatch watch;
             const auto map =
                 options.environment.empty() ? procedural_environment() : read_environment(options.environment);
-            png_file output(options.output);
+            const png_file output(options.output);
 
             mica::glint_material material;
             material.roughness = static_cast<float>(options.roughness);

@@ -12,7 +12,7 @@ void sheet(const sheet_options& options) {
     constexpr std::size_t columns = std::size(densities) + 1, rows = std::size(roughnesses);
     constexpr std::size_t block = margin_top + rows * (tile + gap);
 
-    png_file output(options.output);
+    const png_file output(options.output);
     const auto map = procedural_environment();
     const mica::microfacet_table table;
     const scene seen(shape::sphere, tile, tile);

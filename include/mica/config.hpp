@@ -8,8 +8,8 @@
 #define MICA_VERSION_MINOR 1
 #define MICA_VERSION_PATCH 0
 
-// Marks the functions that a GPU may call: 32-bit integers and floats only, no allocation, no library call.
-// nvcc needs --expt-relaxed-constexpr, for the constexpr members of std::array.
+// Marks the functions that a GPU may call. For float they use 32-bit integers and floats only, no allocation and no
+// library but <cmath>. nvcc needs --expt-relaxed-constexpr, for the constexpr members of std::array.
 #ifndef MICA_HOST_DEVICE
 #if defined(__CUDACC__) || defined(__HIPCC__)
 #define MICA_HOST_DEVICE __host__ __device__

@@ -13,10 +13,16 @@
 #include "random/uniform.hpp"
 #include "random/uniform_stream.hpp"
 
+#include "law/bernoulli_sum.hpp"
 #include "law/binomial_law.hpp"
 #include "law/dual_gated.hpp"
 #include "law/exact.hpp"
+#include "law/floored_gated.hpp"
+#include "law/gated.hpp"
+#include "law/gaussian.hpp"
 #include "law/multinomial.hpp"
+#include "law/quantile.hpp"
+#include "law/smooth_quantile.hpp"
 
 #include "grid/distributed.hpp"
 #include "grid/footprint.hpp"

@@ -49,6 +49,7 @@ MICA_HOST_DEVICE grid_vertices<Real> make_grid_vertices(const footprint<Real>& p
 template <class Law>
 struct distributed_binomial {
     template <scalar_number Real>
+        requires(binomial_law<Law, Real>)
     MICA_HOST_DEVICE Real operator()(const grid_vertices<Real>& vertices, Real probability) const {
         Real sum = 0;
         for (const auto& vertex : vertices)
@@ -61,8 +62,9 @@ struct distributed_binomial {
 template <std::size_t K, class Law>
 struct distributed_multinomial {
     template <scalar_number Real>
-    MICA_HOST_DEVICE std::array<Real, K> operator()(const grid_vertices<Real>& vertices,
-                                                    const std::array<Real, K>& probabilities) const {
+        requires(binomial_law<Law, Real>)
+    MICA_HOST_DEVICE std::array<Real, K>
+    operator()(const grid_vertices<Real>& vertices, const std::array<Real, K>& probabilities) const {
         std::array<Real, K> sum{};
         for (const auto& vertex : vertices) {
             const auto outcome = multinomial<K, Law>{}(vertex.trials, probabilities, uniform_stream<Real>(vertex.seed));

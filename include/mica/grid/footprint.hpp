@@ -5,7 +5,7 @@
 //
 // with a, b, d the entries of M M^T and T = a + d. Source: DB23 Sec. 5.1, and the EWA tradition before it. The textbook
 // sigma_min^2 = T/2 - sqrt(...) is off by 3.5 % at ratio 4e3 in binary32 and negative in 97 % of cases at 1e5; the
-// quotient, with the determinant's cancellation compensated, is good to 1e-6 at ratio 1e5 (tests/grid).
+// quotient, with the determinant's cancellation compensated, is good to 1e-6 at ratio 1e5 (tests/footprint_test.cpp).
 #pragma once
 
 #include <cmath>

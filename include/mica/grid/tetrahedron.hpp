@@ -9,7 +9,7 @@
 //     L    level, the fraction of log2(sigma_min S)
 //
 // which is cut into tetrahedra: nine where r0 >= 2, three in the centre, r0 = 1. Its four vertices share the pixel.
-// Source: DB23 Sec. 5.2, 6.1 and Fig. 7; the cut below is the one of ../shared figures of the published method.
+// Source: DB23 Sec. 5.2, 6.1 and Fig. 7.
 //
 // Seen along L, the lower ring of a cell has vertices b (t=0) and d (t=1), the upper ring a (t=0), c (t=1/2) and
 // e (t=1): three triangles abc, bcd, cde, or in the centre, where the lower ring is one point b, the one triangle abc.
@@ -26,6 +26,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "../numeric/elementary.hpp"
 #include "footprint.hpp"
 
 namespace mica {
@@ -99,7 +100,7 @@ MICA_HOST_DEVICE std::array<tetrahedron_vertex<Real>, 4> enclosing_tetrahedron(c
                                                                                Real scale) {
     const detail::prism<Real> base = detail::enclosing_prism(pixel.ratio, pixel.orientation);
 
-    const Real lambda = clamp(std::log2(pixel.sigma_min) + std::log2(scale), Real(smallest_level), Real(largest_level));
+    const Real lambda = clamp(log2(pixel.sigma_min) + log2(scale), Real(smallest_level), Real(largest_level));
     const Real floor_lambda = floor(lambda);
     const int level = static_cast<int>(floor_lambda);
     const Real fraction = lambda - floor_lambda;

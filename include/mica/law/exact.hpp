@@ -53,7 +53,7 @@ inline double deviance(double x, double mean) {
         for (int k = 3; k < 30; k += 2) {
             const double term = power / k;
             sum += term;
-            if (term == 0 || std::abs(term) < 1e-17 * std::abs(sum)) break;
+            if (std::abs(term) <= 1e-17 * std::abs(sum)) break;
             power *= square;
         }
         return mean * (relative * v + 2 * (1 + relative) * sum);
@@ -99,7 +99,8 @@ double binomial_by_rejection(double n, double p, Uniform& xi) {
     const double alpha = (2.83 + 5.1 / b) * spq;
     const double mode = std::floor((n + 1) * p);
     const double at_mode = binomial_probability(mode, n, p);
-    for (;;) {
+    // 128 tries fail with probability below 1e-50; constant uniforms, as a test may give, would try for ever.
+    for (int tries = 0; tries < 128; ++tries) {
         const double u = static_cast<double>(xi()) - 0.5;
         const double v = static_cast<double>(xi());
         const double us = 0.5 - std::abs(u);
@@ -108,6 +109,7 @@ double binomial_by_rejection(double n, double p, Uniform& xi) {
         if (!(k >= 0 && k <= n)) continue;
         if (v * alpha / (a / (us * us) + b) * at_mode <= binomial_probability(k, n, p)) return k;
     }
+    return mode;
 }
 
 /// Integer n >= 0 and p in [0,1].

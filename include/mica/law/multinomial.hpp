@@ -24,6 +24,7 @@
 #include <array>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 
 #include "binomial_law.hpp"
 
@@ -76,8 +77,9 @@ struct multinomial {
     static_assert(K >= 1, "a multinomial has at least one category");
 
     template <real_number Real, class Uniform>
-    MICA_HOST_DEVICE constexpr std::array<Real, K> operator()(Real trials, const std::array<Real, K>& probabilities,
-                                                              Uniform&& xi) const {
+        requires(binomial_law<Law, Real>)
+    MICA_HOST_DEVICE constexpr std::array<Real, K>
+    operator()(std::type_identity_t<Real> trials, const std::array<Real, K>& probabilities, Uniform&& xi) const {
         std::array<Real, K> p{};
         for (std::size_t k = 0; k < K; ++k) p[k] = detail::in_domain(trials, probabilities[k]).probability;
         auto&& stream = detail::forked(xi);
@@ -117,15 +119,16 @@ template <class Law>
 struct multinomial<std::dynamic_extent, Law> {
     /// Spans of equal, positive length; where the lengths differ the shorter counts.
     template <real_number Real, class Uniform>
-    MICA_HOST_DEVICE constexpr void operator()(Real trials, std::span<const Real> probabilities, Uniform&& xi,
-                                               std::span<Real> counts) const {
+        requires(binomial_law<Law, Real>)
+    MICA_HOST_DEVICE constexpr void operator()(Real trials, std::span<const std::type_identity_t<Real>> probabilities,
+                                               Uniform&& xi, std::span<std::type_identity_t<Real>> counts) const {
         MICA_ASSERT(probabilities.size() == counts.size());
         const std::size_t size = probabilities.size() < counts.size() ? probabilities.size() : counts.size();
         if (size == 0) return;
         auto&& stream = detail::forked(xi);
         const Real n = detail::in_domain(trials, Real(0)).trials;
-        const Real categorised = detail::categorised_trials<Law>(n, sum(probabilities.first(size)), stream);
-        divide(categorised, probabilities.first(size), stream, detail::root_node, counts.first(size));
+        const Real categorised = detail::categorised_trials<Law>(n, sum<Real>(probabilities.first(size)), stream);
+        divide<Real>(categorised, probabilities.first(size), stream, detail::root_node, counts.first(size));
     }
 
   private:

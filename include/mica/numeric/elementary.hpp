@@ -8,8 +8,10 @@
 //
 //   function     domain                              float     double
 //   log          normal, > 0                         2 ulp     2 ulp      (absolute 5e-8, 2e-16 where |log x| < 1/2)
+//   log2         normal, > 0                         2 ulp     2 ulp      (absolute 7e-8, 3e-16 where |log2 x| < 1/2)
 //   log1p_neg    p in [0, 1)                         2 ulp     2 ulp
 //   exp          [-87, 88.37]   ([-708, 709.43])     2 ulp     2 ulp
+//   exp2         [-126, 127]    ([-1022, 1023])      2 ulp     2 ulp
 //   expm1        [-inf, 88.37]  ([-inf, 709.43])     4 ulp     4 ulp      (next to ln2 / 2)
 //   sqrt         0 and normal                        1 ulp     1 ulp
 #pragma once
@@ -150,6 +152,15 @@ MICA_HOST_DEVICE constexpr Real log(Real x) {
     return detail::log_of_split(parts.exponent, parts.mantissa - Real(1));
 }
 
+/// Binary logarithm; exact at powers of two. x normal and > 0; 0 gives about -127 (-1023).
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real log2(Real x) {
+    constexpr auto log2_e = scalar_of<Real>(1.4426950408889634);
+    const auto parts = detail::split(x);
+    const Real f = parts.mantissa - Real(1);
+    return parts.exponent + detail::twice_atanh(f / (Real(2) + f)) * Real(log2_e);
+}
+
 /// log(1 - p) for p in [0, 1), with relative accuracy down to the smallest p. p = 1 gives log(0).
 ///
 /// For p <= 1/2 the argument of the series is p itself, no range reduction; beyond, 1 - p is exact.
@@ -165,6 +176,20 @@ template <real_number Real>
 MICA_HOST_DEVICE constexpr Real exp(Real y) {
     const auto parts = detail::reduce_exponent(y);
     return parts.power + parts.power * detail::expm1_reduced(parts.remainder);
+}
+
+/// 2^x; exact at integers. x in [-126, 127] ([-1022, 1023]); below exactly 0, above 2^127 (2^1023).
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real exp2(Real x) {
+    using Format = detail::format<scalar_of<Real>>;
+    using Integer = integer_of<Real>;
+    constexpr auto ln2 = scalar_of<Real>(0.6931471805599453);
+    constexpr auto largest = scalar_of<Real>(Format::bias);
+    const Real limited = clamp(x, Real(1 - largest), Real(largest));
+    const Integer k = convert<Integer>(limited + select(limited < Real(0), Real(-0.5), Real(0.5)));
+    const Real rest = detail::expm1_reduced((limited - convert<Real>(k)) * Real(ln2));
+    const Real power = reinterpret<Real>((k + Integer(Format::bias)) << Format::mantissa_bits);
+    return select(x < Real(1 - largest), Real(0), power + power * rest);
 }
 
 /// e^y - 1, with relative accuracy at small y. The small argument takes the polynomial itself: written as

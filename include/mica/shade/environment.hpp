@@ -76,17 +76,17 @@ inline double texel_solid_angle(std::size_t width, std::size_t height, std::size
 /// Radiance from every direction.
 class environment_map {
   public:
-    /// texels: width * height, linear radiance, finite and >= 0 (at most 1e30; more counts as that).
+    /// texels: width * height, linear radiance, >= 0 (more than 1e30, infinity too, counts as 1e30).
     /// Fails (std::invalid_argument) on an empty map, a wrong number of texels, a negative or NaN radiance.
     environment_map(std::size_t width, std::size_t height, std::vector<rgb<float>> texels)
         : image_{width, height, std::move(texels)} {
         if (width == 0) MICA_FAIL("width", width, "positive");
         if (height == 0) MICA_FAIL("height", height, "positive");
-        if (image_.texels.size() != width * height)
+        if (image_.texels.size() / width != height || image_.texels.size() % width != 0)
             MICA_FAIL("number of texels", image_.texels.size(), "width * height");
         for (auto& texel : image_.texels)
             for (float* band : {&texel.r, &texel.g, &texel.b}) {
-                if (is_nan(*band) || *band < 0) MICA_FAIL("radiance", *band, "finite and >= 0");
+                if (is_nan(*band) || *band < 0) MICA_FAIL("radiance", *band, ">= 0");
                 *band = minimum(*band, 1e30F);
             }
     }
@@ -116,7 +116,8 @@ class environment_levels {
     static_assert(K >= 2, "an environment needs at least two levels, one of them dark");
 
   public:
-    /// `floor` in [1e-5, 1e-2] keeps levels from being spent on the dark: the luminance minimum counts as at least it.
+    /// `floor` > 0, as published in [1e-5, 1e-2], keeps levels from being spent on the dark: the luminance minimum
+    /// counts as at least it.
     explicit environment_levels(const environment_map& map, float floor = 1e-3F) {
         if (!(floor > 0)) MICA_FAIL("floor", floor, "positive");
         float lowest = std::numeric_limits<float>::max(), highest = 0;

@@ -54,10 +54,10 @@ class texel_pyramid {
         }
         double light = 0, solid_angle = 0;
         for (const block& b : base.blocks) {
-            light += static_cast<double>(b.solid_angle * brightness(b));
+            light += static_cast<double>(b.solid_angle) * light_of(b);
             solid_angle += static_cast<double>(b.solid_angle);
         }
-        ambient_ = light > 0 ? static_cast<float>(light / solid_angle) : 1.F;
+        ambient_ = light > 0 ? light / solid_angle : 1;
         layers_.push_back(std::move(base));
         while (layers_.back().width > 1 || layers_.back().height > 1) layers_.push_back(merged(layers_.back()));
         for (layer& blocks : layers_)
@@ -122,8 +122,12 @@ class texel_pyramid {
         std::vector<float> radius; ///< of the blocks of each row: angle from the middle to the farthest corner
     };
 
-    /// What a block's direction is weighted by: its light, and a little for the dark ones.
-    float brightness(const block& b) const { return b.mean[0] + b.mean[1] + b.mean[2] + ambient_; }
+    static double light_of(const block& b) {
+        return static_cast<double>(b.mean[0]) + static_cast<double>(b.mean[1]) + static_cast<double>(b.mean[2]);
+    }
+
+    /// What a block's direction is weighted by: its light over that of the mean texel, and 1 for the dark ones.
+    double brightness(const block& b) const { return light_of(b) / ambient_ + 1; }
 
     layer merged(const layer& finer) const {
         layer result{2 * finer.side, (finer.width + 1) / 2, (finer.height + 1) / 2, {}, {}};
@@ -131,19 +135,27 @@ class texel_pyramid {
         for (std::size_t y = 0; y < result.height; ++y)
             for (std::size_t x = 0; x < result.width; ++x) {
                 block sum{{}, {0, 0, 0}, 0};
+                vector3<double> direction{0, 0, 0};
                 std::array<double, Channels> mean{};
                 for (std::size_t j = 2 * y; j < (std::min)(2 * y + 2, finer.height); ++j)
                     for (std::size_t i = 2 * x; i < (std::min)(2 * x + 2, finer.width); ++i) {
                         const block& part = finer.blocks[j * finer.width + i];
                         for (std::size_t c = 0; c < Channels; ++c)
                             mean[c] += static_cast<double>(part.solid_angle) * static_cast<double>(part.mean[c]);
-                        sum.direction = sum.direction + part.solid_angle * brightness(part) * part.direction;
+                        const vector3<double> towards{static_cast<double>(part.direction.x),
+                                                      static_cast<double>(part.direction.y),
+                                                      static_cast<double>(part.direction.z)};
+                        direction = direction + static_cast<double>(part.solid_angle) * brightness(part) * towards;
                         sum.solid_angle += part.solid_angle;
                     }
                 for (std::size_t c = 0; c < Channels; ++c)
                     sum.mean[c] = static_cast<float>(mean[c] / static_cast<double>(sum.solid_angle));
                 // Blocks around the whole sphere have no middle; they are never small enough to be used.
-                if (dot(sum.direction, sum.direction) > 0) sum.direction = normalized(sum.direction);
+                if (dot(direction, direction) > 0) {
+                    const vector3<double> unit = normalized(direction);
+                    sum.direction = {static_cast<float>(unit.x), static_cast<float>(unit.y),
+                                     static_cast<float>(unit.z)};
+                }
                 result.blocks.push_back(sum);
             }
         return result;
@@ -164,7 +176,7 @@ class texel_pyramid {
     }
 
     std::vector<layer> layers_;
-    float ambient_ = 0;
+    double ambient_ = 1; ///< light of the mean texel
 };
 
 } // namespace detail

@@ -1,0 +1,220 @@
+// The published laws follow their formulas, with the defects that were measured on them, and the gates theirs.
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <mica/law/bernoulli_sum.hpp>
+#include <mica/law/floored_gated.hpp>
+#include <mica/law/gated.hpp>
+#include <mica/law/gaussian.hpp>
+#include <mica/numeric/pack.hpp>
+#include <mica/random/uniform_stream.hpp>
+
+#include "statistics.hpp"
+
+namespace {
+
+constexpr float smallest_xi = 0x1p-32F, largest_xi = 1 - 0x1p-24F;
+
+/// Mean and variance of a law whose first uniform is a gate that `passing` of all xi pass, and gives 0 otherwise; the
+/// second is integrated by the midpoint rule.
+template <class Law>
+std::array<double, 2> moments_of_gated(float trials, float probability, double passing) {
+    constexpr int points = 200000;
+    double first = 0, second = 0;
+    for (int i = 0; i < points; ++i) {
+        const auto xi2 = static_cast<float>((i + 0.5) / points);
+        int drawn = 0;
+        const auto counts = Law{}(trials, probability, [&] { return drawn++ == 0 ? smallest_xi : xi2; });
+        const auto n = static_cast<double>(counts.successes);
+        first += passing * n / points;
+        second += passing * n * n / points;
+    }
+    return {first, second - first * first};
+}
+
+double none_succeeds(float trials, float probability) {
+    return std::exp(static_cast<double>(trials) * std::log1p(-static_cast<double>(probability)));
+}
+
+TEST(GatedBinomial, HasThePublishedMeanAndVariance) {
+    struct row {
+        float trials, probability;
+        double mean, variance; // over N p and N p q, spec of the published defects
+    };
+    for (const row& r : {row{4, 0.25F, 1.239, 1.331}, row{16, 0.0625F, 1.298, 1.447}, row{64, 0.015625F, 1.312, 1.475},
+                         row{1000, 0.001F, 1.317, 1.483}, row{1000, 0.05F, 1.019, 0.999}}) {
+        const auto [mean, variance] =
+            moments_of_gated<mica::gated_binomial>(r.trials, r.probability, 1 - none_succeeds(r.trials, r.probability));
+        const double expected = static_cast<double>(r.trials * r.probability);
+        EXPECT_NEAR(mean / expected, r.mean, 6e-4) << r.trials;
+        EXPECT_NEAR(variance / (expected * (1 - static_cast<double>(r.probability))), r.variance, 6e-4) << r.trials;
+    }
+}
+
+TEST(GatedBinomial, BelowOneTrialIsOneFacetThatMayBeThere) {
+    for (const float xi : {smallest_xi, 0.1F, 0.14F, 0.16F, 0.6F, 0.64F, 0.66F, largest_xi}) {
+        const auto counts = mica::gated_binomial{}(0.5F, 0.3F, [&] { return xi; });
+        EXPECT_EQ(counts.successes, xi < 0.15F ? 1 : 0) << xi;
+        EXPECT_EQ(counts.failures, xi >= 0.65F ? 1 : 0) << xi;
+    }
+}
+
+TEST(PublishedLaws, HaveTheStatedMeanErrors) {
+    const auto gaussian = [](float p) {
+        double mean = 0;
+        for (int i = 0; i < 100000; ++i)
+            mean += static_cast<double>(
+                mica::gaussian_binomial{}(1000.F, p, [&] { return (static_cast<float>(i) + 0.5F) / 1e5F; }).successes);
+        return mean / 1e5 / static_cast<double>(1000 * p);
+    };
+    EXPECT_NEAR(gaussian(1e-3F), 1.08, 0.005);
+    EXPECT_NEAR(gaussian(1e-4F), 1.82, 0.01);
+    const auto floored = [](float p) {
+        const double passing = 1 - none_succeeds(1000, p);
+        return moments_of_gated<mica::floored_gated_binomial>(1000, p, passing)[0] / static_cast<double>(1000 * p);
+    };
+    EXPECT_NEAR(floored(3e-3F), 1.12, 0.006);
+    EXPECT_NEAR(floored(3e-4F), 0.95, 0.006);
+}
+
+/// DB23 Eq. 18 written down once more, in double.
+double floored_gated_by_formula(double n, double p, double xi1, double z) {
+    if (!(xi1 < 1 - std::pow(1 - p, n))) return 0;
+    const double gaussian = (n - 1) * p + std::sqrt(std::fmax(0, (n - 1) * p * (1 - p))) * z;
+    return std::fmin(1 + std::floor(std::fmin(std::fmax(gaussian, 0), n)), std::ceil(n));
+}
+
+TEST(FlooredGatedBinomial, FollowsItsFormula) {
+    const boost::math::normal_distribution<double> normal;
+    int different = 0;
+    for (std::uint32_t i = 0; i < 20000; ++i) {
+        mica::uniform_stream<float> choose{11, i};
+        const float trials = std::floor(std::exp2(12 * choose())), p = choose();
+        const std::array<float, 2> xi{choose(), choose()};
+        std::size_t drawn = 0;
+        const auto counts = mica::floored_gated_binomial{}(trials, p, [&] { return xi[drawn++]; });
+        EXPECT_EQ(drawn, 2U);
+        const double expected =
+            floored_gated_by_formula(static_cast<double>(trials), static_cast<double>(p), static_cast<double>(xi[0]),
+                                     quantile(normal, static_cast<double>(xi[1])));
+        different += static_cast<double>(counts.successes) != expected; // next to a step, by rounding
+        EXPECT_NEAR(static_cast<double>(counts.successes), expected, 1);
+        EXPECT_EQ(counts.successes + counts.failures, trials);
+    }
+    EXPECT_LE(different, 20);
+}
+
+TEST(GaussianBinomial, FollowsItsFormula) {
+    const boost::math::normal_distribution<double> normal;
+    for (std::uint32_t i = 0; i < 20000; ++i) {
+        mica::uniform_stream<float> choose{12, i};
+        const float trials = std::exp2(20 * choose()), p = choose(), xi = choose();
+        const auto counts = mica::gaussian_binomial{}(trials, p, [&] { return xi; });
+        const double n = static_cast<double>(trials), mean = n * static_cast<double>(p);
+        const double spread = std::sqrt(mean * (1 - static_cast<double>(p)));
+        const double expected = std::fmin(std::fmax(mean + spread * quantile(normal, static_cast<double>(xi)), 0), n);
+        EXPECT_NEAR(static_cast<double>(counts.successes), expected, 3e-6 * spread + 3e-7 * n);
+        EXPECT_NEAR(counts.successes + counts.failures, trials, 1.2e-7F * trials); // one rounding
+    }
+}
+
+TEST(BernoulliSumBinomial, IsExactForFewTrials) {
+    constexpr int samples = 200000;
+    for (const auto& [trials, p] : {std::array{1.F, 0.3F}, {8.F, 0.3F}, {16.F, 0.25F}, {16.F, 0.01F}}) {
+        const auto n = static_cast<std::size_t>(trials);
+        const boost::math::binomial_distribution<double> binomial(static_cast<double>(trials), static_cast<double>(p));
+        std::vector<double> probabilities(n + 1), observed(n + 1, 0.);
+        for (std::size_t k = 0; k <= n; ++k) probabilities[k] = pdf(binomial, static_cast<double>(k));
+        for (std::uint32_t i = 0; i < samples; ++i) {
+            const auto counts = mica::bernoulli_sum_binomial{}(trials, p, mica::uniform_stream<float>{13, i});
+            ASSERT_EQ(counts.successes + counts.failures, trials);
+            observed[static_cast<std::size_t>(counts.successes)] += 1;
+        }
+        EXPECT_GE(statistics::goodness_of_fit(probabilities, observed).p_value, statistics::significance())
+            << trials << ' ' << p;
+    }
+}
+
+TEST(BernoulliSumBinomial, IsAFlooredGaussianBeyond) {
+    constexpr std::uint32_t samples = 200000;
+    double mean = 0, small_mean = 0;
+    for (std::uint32_t i = 0; i < samples; ++i)
+        mean += static_cast<double>(
+            mica::bernoulli_sum_binomial{}(1000.F, 0.02F, mica::uniform_stream<float>{14, i}).successes);
+    for (std::uint32_t i = 0; i < samples; ++i)
+        small_mean += static_cast<double>(
+            mica::bernoulli_sum_binomial{}(1000.F, 1e-3F, mica::uniform_stream<float>{15, i}).successes);
+    EXPECT_NEAR(small_mean / samples, 0.68, 0.012); // the stated 32 %, six standard errors of 0.9 / sqrt(2e5)
+    EXPECT_NEAR(mean / samples, 20 - 0.5, 0.06);    // floor takes half a count; six standard errors of 4.4 / sqrt(2e5)
+}
+
+template <class Law>
+void expect_support() {
+    for (const float trials : {0.F, 0.3F, 1.F, 1.5F, 2.F, 9.7F, 1e5F, 1e16F, std::numeric_limits<float>::infinity()})
+        for (const float p : {0.F, 1e-20F, 0.4F, 1 - 0x1p-24F, 1.F, 1.5F})
+            for (const float xi : {smallest_xi, 0.5F, largest_xi}) {
+                const auto counts = Law{}(trials, p, [&] { return xi; });
+                const float most = std::fmin(std::ceil(trials), std::numeric_limits<float>::max());
+                EXPECT_TRUE(counts.successes >= 0 && counts.successes <= most) << trials << ' ' << p << ' ' << xi;
+                EXPECT_TRUE(counts.failures >= 0 && counts.failures <= most) << trials << ' ' << p << ' ' << xi;
+                if (p == 0) {
+                    EXPECT_EQ(counts.successes, 0) << trials << ' ' << xi;
+                }
+            }
+    const auto undefined = Law{}(std::numeric_limits<float>::quiet_NaN(), 0.5F, [] { return 0.5F; });
+    EXPECT_EQ(undefined.successes, 0);
+    EXPECT_EQ(undefined.failures, 0);
+    static_assert(mica::binomial_law<Law> && mica::binomial_law<Law, double> &&
+                  mica::binomial_law<Law, mica::pack<float, 4>>);
+}
+
+TEST(PublishedLaws, StayInTheirSupport) {
+    expect_support<mica::gaussian_binomial>();
+    expect_support<mica::gated_binomial>();
+    expect_support<mica::floored_gated_binomial>();
+    expect_support<mica::bernoulli_sum_binomial>();
+    expect_support<mica::basic_gated_binomial<mica::naive_gate>>();
+    expect_support<mica::basic_gated_binomial<mica::scaled_gate>>();
+}
+
+template <class Gate>
+double largest_error_of_none() {
+    double worst = 0;
+    for (double n = 1; n <= 1.0001e16; n *= 1.37)
+        for (double p = 1e-16; p <= 1; p *= 1.13) {
+            const auto trials = static_cast<float>(n), probability = static_cast<float>(p);
+            const double found = static_cast<double>(Gate::none(trials, probability));
+            worst = std::fmax(worst, std::abs(found - none_succeeds(trials, probability)));
+        }
+    return worst;
+}
+
+/// KK25 Fig. 5, and the default beside it.
+TEST(Gates, HaveTheirPublishedErrors) {
+    EXPECT_GE(largest_error_of_none<mica::naive_gate>(), 0.99);
+    const double scaled = largest_error_of_none<mica::scaled_gate>();
+    EXPECT_TRUE(scaled > 7e-5 && scaled < 9e-5) << scaled;
+    EXPECT_LE(largest_error_of_none<mica::log1p_gate>(), 1e-7);
+}
+
+template <class Gate>
+void expect_ends() {
+    EXPECT_EQ(Gate::none(0.F, 0.3F), 1);
+    EXPECT_EQ(Gate::none(5.F, 0.F), 1);
+    EXPECT_EQ(Gate::none(0.5F, 1.F), 0);
+    EXPECT_EQ(Gate::none(0.F, 1.F), 1);
+    EXPECT_EQ(Gate::any(5.F, 0.F), 0);
+    EXPECT_EQ(Gate::any(1e16F, 1.F), 1);
+}
+
+TEST(Gates, AreExactAtTheEnds) {
+    expect_ends<mica::naive_gate>();
+    expect_ends<mica::scaled_gate>();
+    expect_ends<mica::log1p_gate>();
+}
+
+} // namespace
