@@ -97,7 +97,7 @@ TEST(Multinomial, CountsSumToRoundedRealTrials) {
             EXPECT_TRUE(sum == std::floor(n) || sum == std::floor(n) + 1) << n << ": " << sum;
             if (sum > n) more += 1;
         }
-        EXPECT_TRUE(statistics::binomial_p_value(more, draws, n - std::floor(n)) >= statistics::significance())
+        EXPECT_TRUE(statistics::passes(statistics::binomial_p_value(more, draws, n - std::floor(n))))
             << n << ": " << more / draws;
     }
 }
@@ -337,7 +337,7 @@ void expect_binomial_categories(double trials, const std::array<double, K>& p, s
     }
     for (std::size_t k = 0; k < K; ++k) {
         const auto fit = statistics::goodness_of_fit(cells[k], counts[k]);
-        EXPECT_TRUE(fit.p_value >= statistics::significance())
+        EXPECT_TRUE(statistics::passes(fit.p_value))
             << "N = " << trials << ", category " << k << " of " << K << ", p = " << p[k] << ", uniform_stream<double>{"
             << seed << ", 0.." << fit_draws << "}: p-value " << fit.p_value << ", worst at "
             << cells[k].start_of(fit.worst_cell);
@@ -394,7 +394,7 @@ TEST(Multinomial, HasTheJointLaw) {
         observed[joint_cell(static_cast<int>(drawn[0]), static_cast<int>(drawn[1]))] += 1;
     }
     const auto fit = statistics::goodness_of_fit(probabilities, observed);
-    EXPECT_TRUE(fit.p_value >= statistics::significance()) << fit.p_value << ", worst cell " << fit.worst_cell;
+    EXPECT_TRUE(statistics::passes(fit.p_value)) << fit.p_value << ", worst cell " << fit.worst_cell;
 }
 
 /// Negative control: categories drawn one by one, each exactly binomial, do not have the joint law.
@@ -428,7 +428,7 @@ TEST(Multinomial, HasTheCovariancesOfTheLaw) {
             const double variances = n * p[a] * (1 - p[a]) * n * p[b] * (1 - p[b]);
             const double error = std::sqrt((variances + expected * expected) / fit_draws);
             const double found = covariances[a][b].covariance();
-            EXPECT_TRUE(statistics::normal_p_value((found - expected) / error) >= statistics::significance())
+            EXPECT_TRUE(statistics::passes(statistics::normal_p_value((found - expected) / error)))
                 << a << ' ' << b << ": " << found << " instead of " << expected;
         }
     }
@@ -453,7 +453,7 @@ void expect_rare_category_keeps_its_mean(std::uint32_t seed) {
             const auto drawn = multinomial<K, exact_binomial>{}(trials, p, uniform_stream<float>{seed, i});
             sample.add(static_cast<double>(drawn[position]));
         }
-        EXPECT_TRUE(statistics::mean_p_value(sample, mean, std::sqrt(mean)) >= statistics::significance())
+        EXPECT_TRUE(statistics::passes(statistics::mean_p_value(sample, mean, std::sqrt(mean))))
             << "position " << position << " of " << K << ": " << sample.mean() << " instead of " << mean;
     }
 }
@@ -481,13 +481,12 @@ TEST(Multinomial, DualGatedKeepsTheMeansBelowTwoTrials) {
         }
         EXPECT_EQ(sum_varies, n != 1) << n;
         for (std::size_t k = 0; k < 3; ++k)
-            EXPECT_TRUE(statistics::mean_p_value(samples[k], n * p[k], std::sqrt(samples[k].variance())) >=
-                        statistics::significance())
+            EXPECT_TRUE(
+                statistics::passes(statistics::mean_p_value(samples[k], n * p[k], std::sqrt(samples[k].variance()))))
                 << n << ", category " << k << ": " << samples[k].mean();
         const double deviation = std::sqrt(sums.variance());
         if (deviation > 0) {
-            EXPECT_TRUE(statistics::mean_p_value(sums, n, deviation) >= statistics::significance())
-                << n << ": " << sums.mean();
+            EXPECT_TRUE(statistics::passes(statistics::mean_p_value(sums, n, deviation))) << n << ": " << sums.mean();
         }
     }
 }
@@ -500,7 +499,7 @@ TEST(Multinomial, DualGatedSumsToTheTrialsOnAverage) {
         for (std::uint32_t i = 0; i < (1U << 15); ++i)
             sums.add(total(multinomial<8, dual_gated_binomial>{}(n, p, uniform_stream<double>{25U, i})) - n);
         const double deviation = (std::max)(std::sqrt(sums.variance()), 1e-9);
-        EXPECT_TRUE(statistics::mean_p_value(sums, 0, deviation) >= statistics::significance())
+        EXPECT_TRUE(statistics::passes(statistics::mean_p_value(sums, 0, deviation)))
             << n << ": " << sums.mean() << " off";
     }
 }

@@ -55,12 +55,21 @@ MICA_HOST_DEVICE constexpr void require_binomial_parameters(Real trials, Real pr
     for (int i = 0; i < lanes_of<Real>; ++i) {
         const auto n = lane(trials, i);
         const auto p = lane(probability, i);
-        if (is_nan(n) || !(n >= 0) || n > std::numeric_limits<scalar_of<Real>>::max())
+        if (is_nan(n) || !(n >= 0) || n > (std::numeric_limits<scalar_of<Real>>::max)())
             MICA_FAIL("trials", n, "finite and >= 0");
         if (is_nan(p) || !(p >= 0 && p <= 1)) MICA_FAIL("probability", p, "in [0,1]");
     }
 }
 #endif
+
+/// x limited to [0, most], `most` > 0 and finite; NaN gives 0 or most. By its bits, whose order as integers is that of
+/// the numbers from 0 on: -ffast-math lets clang drop a comparison that only an infinity fails.
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real limited_from_0(Real x, scalar_of<Real> most) {
+    using Integer = integer_of<Real>;
+    const Integer most_bits = Integer(reinterpret<integer_of<scalar_of<Real>>>(most));
+    return reinterpret<Real>(minimum(maximum(reinterpret<Integer>(x), Integer(0)), most_bits));
+}
 
 /// The parameters brought into the domain, as stated above.
 template <real_number Real>
@@ -68,9 +77,11 @@ MICA_HOST_DEVICE constexpr binomial_parameters<Real> in_domain(Real trials, Real
 #if MICA_CHECKED
     require_binomial_parameters(trials, probability);
 #endif
+    using Scalar = scalar_of<Real>;
     const auto undefined = is_nan(trials) || is_nan(probability);
-    const Real largest = Real(std::numeric_limits<scalar_of<Real>>::max());
-    return {clamp(select(undefined, Real(0), trials), Real(0), largest), clamp(probability, Real(0), Real(1))};
+    const Real n = limited_from_0(trials, (std::numeric_limits<Scalar>::max)());
+    const Real p = limited_from_0(probability, Scalar(1));
+    return {select(undefined, Real(0), n), select(undefined, Real(0), p)};
 }
 
 /// Real trials rounded to an integer that has them as its mean: floor(N) + (xi < N - floor(N)). Not floor(N + xi),

@@ -1,63 +1,73 @@
-// mica/law/quantile.hpp: the binomial quantile, exact at small counts, Cornish-Fisher beyond.
+// mica/law/quantile.hpp: the binomial quantile, exact at small counts, a Cornish-Fisher quotient beyond.
 //
 //     n >= k + 1  exactly where  xi < S_k = P(X > k),  k < Gates;   beyond the gates  n = max(Gates, floor f(z))
 //
-// with z = -Phi^-1(xi), and for p <= 1/2, s = sqrt(N p q), d = q - p, w = p q
+// with z = -Phi^-1(xi), and for p <= 1/2, w = p q, d = q - p, s = sqrt(N p q), y = z / s
 //
-//     f(z) = N p + 1/2 + s z + d (z^2-1)/6 - z [(1+2w) z^2 + 2 - 14w] / (72 s)                        third order
-//          + d (2+w) (3 z^4 + 7 z^2 - 16) / (1620 s^2)                                                fourth
-//          + z [(9w^2+117w-51.75) z^4 + (256w^2+403w-137) z^2 + 671-1354w-433w^2] / (38880 s^3)       fifth
+//     f(z) = N p + 1/2 + s z + d (z^2-1)/6
+//          - [ y ((1+2w) z^2 + 2 - 14w - 0.53/s^2) + (d/s^2) (1.46 - (0.24+2w) z^2) ]
+//            / ( 72 [1 + y (0.225 d - (0.0125 + 0.085 w) y)] )
 //
-// the Cornish-Fisher expansion of the binomial quantile, Sheppard's correction included. The polynomial turns back far
-// out, so |z| is limited to 4 s, s (3+d), s (3+2d). Its defect is all at small counts, which the gates take. For
-// p > 1/2 the failures are evaluated at 1 - xi.
+// The terms to the third order, those without a constant of two digits, are the Cornish-Fisher expansion of the binomial
+// quantile with Sheppard's correction. Its next orders,
 //
-// Source: mica's own (Cornish & Fisher 1938 for the expansion). Orders: third up to 3 gates, fourth with 4, fifth from
-//   5 on; below 5 gates the fifth hurts.
+//     + d (2+w) (3 z^4 + 7 z^2 - 16) / (1620 s^2)
+//     + z [(9w^2+117w-51.75) z^4 + (256w^2+403w-137) z^2 + 671-1354w-433w^2] / (38880 s^3),
+//
+// continue the third in powers of y as a geometric series nearly does, and diverge where y is large, just beyond the
+// gates; so the series is summed as a quotient. Matching it order by order would give (2/15)(2+w)/(1+2w), about 0.267,
+// for 0.225, and 1.42 + 0.71 w for 1.46; the constants above are fitted to the binomial for 4 to 8 gates (tools/
+// fit_quantile) and rounded, and serve any number of gates. Below a variance of 1/20, where hardly anything passes the
+// gates, s^2 is 1/20; z is limited to [-2s, (2.5 + 5.5 d) s], within which f increases. For p > 1/2 the failures are
+// evaluated at 1 - xi.
+//
+// Source: mica's own (Cornish & Fisher 1938 for the expansion).
 // Draws: two uniforms, the quantile first, then the rounding of real N: trials = floor(N) + (xi' < N - floor(N)).
-// Output: integers that sum to the trials. n does not increase with xi: small xi means many successes.
+// Output: integers that sum to the trials. n does not increase with xi (small xi means many successes) and does not
+//   decrease with N or p, but for the rounding of S_k, 1e-7 of xi.
 // Error: over N in {3..1e7}, N p in [1e-3, 300], both sides of p = 1/2, binary32, computed without sampling
 //   (tests/quantile_test.cpp):
 //
 //     gates   total variation   relative mean error   relative variance error
-//       4         8e-4               1.2e-3                 9e-3
-//       8         1e-4               1e-4                   1e-3
+//       1         5e-3               5e-2                1.5e-1
+//       2         6e-4               4e-3                1.9e-2
+//       3         2e-4               4e-4                2.6e-3
+//       4         1e-4               5e-5                4e-4
+//       8         3e-5               3e-5                1.5e-4
+//      16         1e-5               3e-5                1.5e-4
 //
-//   At N p = 1e-6 the relative mean error is below 1e-3, at 1e-8 below 5e-2: the resolution of the uniforms near 0.
-//   Rare failures (p near 1) have that of 1 - xi, 2^-24.
+//   The last figures of mean and variance are the resolution of 1 - xi and 1 - p, 2^-24: rare failures (p near 1) have no
+//   better. At N p = 1e-6 the relative mean error is below 1e-3, at 1e-8 below 5e-2, the resolution of the uniforms near
+//   0. Counts near 2^20 are found to 1/8, larger ones to their ulp.
 #pragma once
 
-#include "../numeric/gate.hpp"
-#include "../numeric/normal.hpp"
+#include "../numeric/elementary.hpp"
 #include "binomial_law.hpp"
+#include "rarer_side.hpp"
 
 namespace mica {
 
 namespace detail {
 
-/// f(z) of the given order, for p <= 1/2. Below a variance of 1e-4, where no outcome passes the gates, that of 1e-4.
-template <int Order, real_number Real>
-MICA_HOST_DEVICE constexpr Real cornish_fisher(Real trials, Real p, Real z) {
+/// f(z) for p <= 1/2.
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real cornish_fisher_quotient(Real trials, Real p, Real z) {
     using Scalar = scalar_of<Real>;
-    const Real q = Real(1) - p;
-    const Real w = p * q;
-    const Real d = q - p;
-    const Real s = sqrt(maximum(trials * w, Real(1e-4F)));
-    const Real limit = Order == 5 ? s * (Real(3) + Real(2) * d) : Order == 4 ? s * (Real(3) + d) : s * Real(4);
-    const Real x = clamp(z, -limit, limit);
+    constexpr auto constant = [](double value) { return Real(static_cast<Scalar>(value)); };
+    const Real w = p * (Real(1) - p);
+    const Real d = Real(1) - p - p;
+    const Real variance = maximum(trials * w, constant(0.05));
+    const Real r = inverse_sqrt(variance);
+    const Real s = variance * r;
+    const Real x = clamp(z, Real(-2) * s, (Real(2.5F) + Real(5.5F) * d) * s);
     const Real x2 = x * x;
-    const Real r = Real(1) / s;
-    Real sum = d * (x2 - Real(1)) * Real(Scalar(1) / 6) -
-               x * r * ((Real(1) + Real(2) * w) * x2 + Real(2) - Real(14) * w) * Real(Scalar(1) / 72);
-    if constexpr (Order >= 4)
-        sum = sum + d * (Real(2) + w) * ((Real(3) * x2 + Real(7)) * x2 - Real(16)) * (r * r) * Real(Scalar(1) / 1620);
-    if constexpr (Order >= 5) {
-        const Real fifth = (Real(9) * w + Real(117)) * w - Real(51.75F);
-        const Real third = (Real(256) * w + Real(403)) * w - Real(137);
-        const Real first = Real(671) - (Real(433) * w + Real(1354)) * w;
-        sum = sum + x * ((fifth * x2 + third) * x2 + first) * (r * r * r) * Real(Scalar(1) / 38880);
-    }
-    return trials * p + s * x + (sum + Real(0.5F));
+    const Real r2 = r * r;
+    const Real y = x * r;
+    const Real third = (constant(1. / 72) + constant(2. / 72) * w) * x2 + constant(2. / 72) - constant(14. / 72) * w;
+    const Real fourth = constant(1.46 / 72) - (constant(0.24 / 72) + constant(2. / 72) * w) * x2;
+    const Real above = y * (third - constant(0.53 / 72) * r2) + d * r2 * fourth;
+    const Real below = Real(1) + y * (constant(0.225) * d - (constant(0.0125) + constant(0.085) * w) * y);
+    return trials * p + s * x + (d * (x2 - Real(1)) * constant(1. / 6) + Real(0.5F) - above / below);
 }
 
 } // namespace detail
@@ -72,33 +82,27 @@ struct quantile_binomial {
     MICA_HOST_DEVICE constexpr counts<Real> operator()(Real trials, Real probability, Uniform&& xi) const {
         using Scalar = scalar_of<Real>;
         const auto [real_trials, p] = detail::in_domain(trials, probability);
-        const Real u = xi();
+        const auto side = detail::make_rarer_side(p, xi());
         const Real n = detail::dithered(real_trials, xi());
 
-        const auto mirrored = p > Real(0.5);
-        const Real rarer = select(mirrored, Real(1) - p, p);
-        const Real tail = select(mirrored, Real(1) - u, u);
-
         // The recursion multiplies q^N by up to (N p/q)^Gates, so q^N has to underflow to zero.
-        const Real exponent = n * log1p_neg(rarer);
-        const Real odds = rarer / (Real(1) - rarer);
-        Real above = -expm1(exponent); // P(X > gate)
-        Real mass = exp(exponent);     // P(X = gate)
+        const Real exponent = n * log1p_neg(side.probability);
+        const Real odds = side.probability / (Real(1) - side.probability);
+        Real mass = exp(exponent);                                // P(X = gate)
+        Real above = detail::any_less_tail(side, exponent, mass); // P(X > gate) - tail
         Real passed = Real(0);
         for (int gate = 0; gate < Gates; ++gate) {
             const auto k = static_cast<Scalar>(gate);
-            passed = passed + select(tail < above, Real(1), Real(0));
+            passed = passed + select(above > Real(0), Real(1), Real(0));
             mass = mass * ((n - Real(k)) * odds * Real(1 / (k + 1)));
             above = above - mass;
         }
 
         constexpr Scalar gates = Gates;
-        constexpr int order = Gates >= 5 ? 5 : Gates == 4 ? 4 : 3;
-        const Real quantile = normal_quantile(u);
-        const Real z = select(mirrored, quantile, -quantile);
-        const Real beyond = maximum(floor(detail::cornish_fisher<order>(n, rarer, z)), Real(gates));
+        const Real expansion = detail::cornish_fisher_quotient(n, side.probability, side.z);
+        const Real beyond = maximum(floor(expansion), Real(gates));
         const Real drawn = minimum(select(passed < Real(gates), passed, beyond), n);
-        return {select(mirrored, n - drawn, drawn), select(mirrored, drawn, n - drawn)};
+        return {select(side.failures, n - drawn, drawn), select(side.failures, drawn, n - drawn)};
     }
 };
 

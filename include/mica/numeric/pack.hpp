@@ -5,18 +5,15 @@
 // extensions because plain loops stay scalar under a user's default flags: g++ needs -fno-trapping-math and both
 // compilers -fno-math-errno to vectorise them, and a header cannot ask its users for flags. Without the extensions
 // (MICA_VECTOR_EXTENSIONS 0) it is an array and a loop.
+//
+// Packs and masks have copy constructors of their own, which do what the compiler's would, to be passed to functions by
+// address: vectors wider than the registers would be passed on the stack otherwise, differently under other -march
+// flags (of which compilers warn), and g++ 12 now and then forgets to take them off it again, 32 bytes a call.
 #pragma once
 
 #include <cstddef>
 
 #include "number.hpp"
-
-#if MICA_VECTOR_EXTENSIONS
-// Compilers warn that vectors wider than the target's registers are passed differently under other -march flags.
-// Packs are arguments of inline functions only, never of a binary interface. Not restored at the end of this file
-// because the warning names the place of use.
-#pragma GCC diagnostic ignored "-Wpsabi"
-#endif
 
 namespace mica {
 
@@ -58,7 +55,15 @@ struct vector_of {
 template <std::size_t Bytes, int W>
 struct pack_mask {
     using element = typename detail::signed_of_size<Bytes>::type;
-    typename detail::vector_of<element, W>::type v;
+    using vector = typename detail::vector_of<element, W>::type;
+    vector v;
+
+    MICA_HOST_DEVICE constexpr pack_mask(const vector& lanes) : v(lanes) {}
+    MICA_HOST_DEVICE constexpr pack_mask(const pack_mask& other) : v(other.v) {}
+    MICA_HOST_DEVICE constexpr pack_mask& operator=(const pack_mask& other) {
+        v = other.v;
+        return *this;
+    }
 
     MICA_HOST_DEVICE bool operator[](int i) const { return v[i] != 0; }
 
@@ -69,7 +74,7 @@ struct pack_mask {
 #else
     template <class Operation>
     MICA_HOST_DEVICE static pack_mask each(Operation operation) {
-        pack_mask result{};
+        pack_mask result{vector{}};
         for (int i = 0; i < W; ++i) result.v[i] = operation(i) ? element(-1) : element(0);
         return result;
     }
@@ -96,7 +101,12 @@ struct pack {
     vector v;
 
     pack() = default;
-    MICA_HOST_DEVICE explicit constexpr pack(vector lanes) : v(lanes) {}
+    MICA_HOST_DEVICE constexpr pack(const pack& other) : v(other.v) {}
+    MICA_HOST_DEVICE constexpr pack& operator=(const pack& other) {
+        v = other.v;
+        return *this;
+    }
+    MICA_HOST_DEVICE explicit constexpr pack(const vector& lanes) : v(lanes) {}
 
     /// The same value in every lane.
     template <arithmetic Scalar>
@@ -222,7 +232,9 @@ MICA_HOST_DEVICE inline To convert(pack<T, W> value) {
 
 template <class To, class T, int W>
     requires(sizeof(To) == sizeof(pack<T, W>))
-MICA_HOST_DEVICE inline To reinterpret(pack<T, W> value) { return __builtin_bit_cast(To, value); }
+MICA_HOST_DEVICE inline To reinterpret(pack<T, W> value) {
+    return To(__builtin_bit_cast(typename To::vector, value.v));
+}
 
 template <class T, int W>
 MICA_HOST_DEVICE inline T lane(pack<T, W> value, int i) {
