@@ -15,26 +15,8 @@
 
 #include "enumeration.hpp"
 #include "scripted_uniforms.hpp"
-#include "statistics.hpp"
 
 namespace {
-
-/// Mean and variance of a law whose first uniform is a gate that `passing` of all xi pass, and gives 0 otherwise; the
-/// second is integrated by the midpoint rule.
-template <class Law>
-std::array<double, 2> moments_of_gated(float trials, float probability, double passing) {
-    constexpr int points = 200000;
-    double first = 0, second = 0;
-    for (int i = 0; i < points; ++i) {
-        const auto xi2 = static_cast<float>((i + 0.5) / points);
-        int drawn = 0;
-        const auto counts = Law{}(trials, probability, [&] { return drawn++ == 0 ? smallest_uniform<float> : xi2; });
-        const auto n = static_cast<double>(counts.successes);
-        first += passing * n / points;
-        second += passing * n * n / points;
-    }
-    return {first, second - first * first};
-}
 
 double none_succeeds(float trials, float probability) {
     return std::exp(static_cast<double>(trials) * std::log1p(-static_cast<double>(probability)));
@@ -47,11 +29,9 @@ TEST(GatedBinomial, HasThePublishedMeanAndVariance) {
     };
     for (const row& r : {row{4, 0.25F, 1.239, 1.331}, row{16, 0.0625F, 1.298, 1.447}, row{64, 0.015625F, 1.312, 1.475},
                          row{1000, 0.001F, 1.317, 1.483}, row{1000, 0.05F, 1.019, 0.999}}) {
-        const auto [mean, variance] =
-            moments_of_gated<mica::gated_binomial>(r.trials, r.probability, 1 - none_succeeds(r.trials, r.probability));
-        const double expected = static_cast<double>(r.trials * r.probability);
-        EXPECT_NEAR(mean / expected, r.mean, 6e-4) << r.trials;
-        EXPECT_NEAR(variance / (expected * (1 - static_cast<double>(r.probability))), r.variance, 6e-4) << r.trials;
+        const auto found = enumeration::deviation_of<mica::gated_binomial>(r.trials, r.probability);
+        EXPECT_TRUE(std::abs(found.mean - r.mean) <= 6e-4) << r.trials << ' ' << found.mean;
+        EXPECT_TRUE(std::abs(found.variance - r.variance) <= 6e-4) << r.trials << ' ' << found.variance;
     }
 }
 
@@ -63,22 +43,16 @@ TEST(GatedBinomial, BelowOneTrialIsOneFacetThatMayBeThere) {
     }
 }
 
+/// What the headers say of the means, over N p.
 TEST(PublishedLaws, HaveTheStatedMeanErrors) {
-    const auto gaussian = [](float p) {
-        double mean = 0;
-        for (int i = 0; i < 100000; ++i)
-            mean += static_cast<double>(
-                mica::gaussian_binomial{}(1000.F, p, [&] { return (static_cast<float>(i) + 0.5F) / 1e5F; }).successes);
-        return mean / 1e5 / static_cast<double>(1000 * p);
+    const auto mean_is = [](const enumeration::deviation& found, double stated, double rounding) {
+        EXPECT_TRUE(std::abs(found.mean - stated) <= rounding) << found.mean << " instead of " << stated;
     };
-    EXPECT_NEAR(gaussian(1e-3F), 1.08, 0.005);
-    EXPECT_NEAR(gaussian(1e-4F), 1.82, 0.01);
-    const auto floored = [](float p) {
-        const double passing = 1 - none_succeeds(1000, p);
-        return moments_of_gated<mica::floored_gated_binomial>(1000, p, passing)[0] / static_cast<double>(1000 * p);
-    };
-    EXPECT_NEAR(floored(3e-3F), 1.12, 0.006);
-    EXPECT_NEAR(floored(3e-4F), 0.95, 0.006);
+    mean_is(enumeration::deviation_of<mica::gaussian_binomial>(1000, 1e-3F), 1.08, 0.005);
+    mean_is(enumeration::deviation_of<mica::gaussian_binomial>(1000, 1e-4F), 1.82, 0.005);
+    mean_is(enumeration::deviation_of<mica::floored_gated_binomial>(1000, 3e-3F), 1.12, 0.006);
+    mean_is(enumeration::deviation_of<mica::floored_gated_binomial>(1000, 3e-4F), 0.95, 0.006);
+    mean_is(enumeration::deviation_of<mica::bernoulli_sum_binomial>(1000, 1e-3F), 0.68, 0.005);
 }
 
 /// DB23 Eq. 18 written down once more, in double.
@@ -123,33 +97,19 @@ TEST(GaussianBinomial, FollowsItsFormula) {
 }
 
 TEST(BernoulliSumBinomial, IsExactForFewTrials) {
-    constexpr int samples = 200000;
-    for (const auto& [trials, p] : {std::array{1.F, 0.3F}, {8.F, 0.3F}, {16.F, 0.25F}, {16.F, 0.01F}}) {
-        const auto n = static_cast<std::size_t>(trials);
-        const boost::math::binomial_distribution<double> binomial(static_cast<double>(trials), static_cast<double>(p));
-        std::vector<double> probabilities(n + 1), observed(n + 1, 0.);
-        for (std::size_t k = 0; k <= n; ++k) probabilities[k] = pdf(binomial, static_cast<double>(k));
-        for (std::uint32_t i = 0; i < samples; ++i) {
-            const auto counts = mica::bernoulli_sum_binomial{}(trials, p, mica::uniform_stream<float>{13, i});
-            ASSERT_EQ(counts.successes + counts.failures, trials);
-            observed[static_cast<std::size_t>(counts.successes)] += 1;
-        }
-        EXPECT_TRUE(statistics::passes(statistics::goodness_of_fit(probabilities, observed).p_value))
-            << trials << ' ' << p;
+    for (const auto& [trials, p] : {std::pair{1.F, 0.3F}, {8.F, 0.3F}, {8.5F, 0.3F}, {16.F, 0.25F}, {16.F, 0.01F}}) {
+        const auto found = enumeration::deviation_of<mica::bernoulli_sum_binomial>(trials, p);
+        EXPECT_TRUE(found.total_variation <= 1e-7) << trials << ' ' << p << ' ' << found.total_variation;
     }
 }
 
+/// The floor takes half a count off the mean.
 TEST(BernoulliSumBinomial, IsAFlooredGaussianBeyond) {
-    constexpr std::uint32_t samples = 200000;
-    double mean = 0, small_mean = 0;
-    for (std::uint32_t i = 0; i < samples; ++i)
-        mean += static_cast<double>(
-            mica::bernoulli_sum_binomial{}(1000.F, 0.02F, mica::uniform_stream<float>{14, i}).successes);
-    for (std::uint32_t i = 0; i < samples; ++i)
-        small_mean += static_cast<double>(
-            mica::bernoulli_sum_binomial{}(1000.F, 1e-3F, mica::uniform_stream<float>{15, i}).successes);
-    EXPECT_NEAR(small_mean / samples, 0.68, 0.012); // the stated 32 %, six standard errors of 0.9 / sqrt(2e5)
-    EXPECT_NEAR(mean / samples, 20 - 0.5, 0.06);    // floor takes half a count; six standard errors of 4.4 / sqrt(2e5)
+    for (const auto& [trials, p] : {std::pair{1000.F, 0.02F}, {17.F, 0.4F}, {16.F, 0.4F}}) {
+        const auto table = enumeration::enumerate<mica::bernoulli_sum_binomial>::of(trials, p);
+        const double expected = static_cast<double>(trials) * static_cast<double>(p) - 0.5;
+        EXPECT_TRUE(std::abs(table.mean() - expected) <= 0.01) << trials << ' ' << p << ' ' << table.mean();
+    }
 }
 
 template <class Gate>
