@@ -15,6 +15,8 @@
 #include "mica/numeric/pack.hpp"
 #include "mica/random/uniform_stream.hpp"
 
+#include "every_law.hpp"
+
 static_assert(MICA_CHECKED == 1, "compile with -DMICA_CHECKED=1");
 
 namespace {
@@ -53,11 +55,13 @@ void expect_complaints() {
     EXPECT_EQ(law(limits::max(), Real(1)), "");
 }
 
-TEST(Checked, LawsNameTheBadParameterAndItsValue) {
-    expect_complaints<mica::exact_binomial, float>();
-    expect_complaints<mica::exact_binomial, double>();
-    expect_complaints<mica::dual_gated_binomial, float>();
-    expect_complaints<mica::dual_gated_binomial, double>();
+template <class Law>
+class CheckedLaw : public testing::Test {};
+TYPED_TEST_SUITE(CheckedLaw, every_law, by_law_name);
+
+TYPED_TEST(CheckedLaw, NamesTheBadParameterAndItsValue) {
+    expect_complaints<TypeParam, float>();
+    expect_complaints<TypeParam, double>();
 }
 
 /// One bad lane is enough, whichever it is.

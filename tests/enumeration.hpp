@@ -3,12 +3,15 @@
 // A law is a function of its uniforms, and a uniform_stream<float> can give 2^31 of them. Where the outcome moves one
 // way in a uniform, bisection finds how many of the 2^31 give each count: no noise, no seed. A second uniform takes
 // few decisions (a gate, the rounding of real trials); its pieces are found in the same way.
+//
+// Of successes and failures the rarer are counted: beyond p = 1/2 the failures, of which Real keeps the digits.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -50,13 +53,21 @@ inline constexpr uniform_roles roles_of<mica::basic_dual_gated_binomial<Gate>>{0
 template <int Gates>
 inline constexpr uniform_roles roles_of<mica::quantile_binomial<Gates>>{1, 0};
 
+inline double rarer_probability(float probability) {
+    const auto p = static_cast<double>(probability);
+    return p > 0.5 ? 1 - p : p;
+}
+
+template <class Real>
+double rarer_count(const mica::counts<Real>& outcome, float probability) {
+    return static_cast<double>(probability > 0.5F ? outcome.failures : outcome.successes);
+}
+
 /// A law's outcome at given uniforms.
 template <class Law>
-mica::counts<double> outcome_at(float trials, float probability, uniform_number choice, uniform_number count) {
+mica::counts<float> outcome_at(float trials, float probability, uniform_number choice, uniform_number count) {
     int drawn = 0;
-    const auto result =
-        Law{}(trials, probability, [&] { return uniform_of(drawn++ == roles_of<Law>.choice ? choice : count); });
-    return {static_cast<double>(result.successes), static_cast<double>(result.failures)};
+    return Law{}(trials, probability, [&] { return uniform_of(drawn++ == roles_of<Law>.choice ? choice : count); });
 }
 
 /// Calls visit(first, last, key) for the stretches of uniforms in which key(number) is constant. Between two uniforms
@@ -81,16 +92,18 @@ void each_stretch(const Key& key, const Visit& visit, uniform_number first = 0, 
     split(split, first, key(first), last, key(last));
 }
 
-/// Counts in cells of equal width, wide ones where the spread is large, and the moments of the unrounded counts.
+/// Counts of the rarer outcome in cells of equal width, wide ones where the spread is large, and the moments of the
+/// unrounded counts.
 class outcome_table {
   public:
-    /// Cells for `trials` and `probability`: nine standard deviations to each side and 40 counts more.
-    outcome_table(double trials, double probability)
-        : trials_(trials), probability_(probability), mean_(trials * probability) {
-        const double deviation = std::sqrt(mean_ * (1 - probability));
-        width_ = std::max(1., std::floor(deviation / 64));
+    /// Cells nine standard deviations to each side of the mean and 40 counts more, no wider than a sixteenth of one.
+    outcome_table(float trials, float probability)
+        : trials_(static_cast<double>(trials)), probability_(rarer_probability(probability)),
+          mean_(trials_ * probability_) {
+        const double deviation = std::sqrt(mean_ * (1 - probability_));
+        width_ = std::max(1., std::floor(deviation / 16));
         first_ = std::max(0., std::floor(mean_ - 9 * deviation) - 1);
-        const double last = std::min(std::ceil(trials), std::ceil(mean_ + 9 * deviation) + 40);
+        const double last = std::min(std::ceil(trials_), std::ceil(mean_ + 9 * deviation) + 40);
         mass_.assign(static_cast<std::size_t>(std::floor((last - first_) / width_)) + 1, 0.);
     }
 
@@ -150,27 +163,27 @@ class outcome_table {
 /// Adds a law's outcomes, `mass` of them, along its count uniform at one choice.
 template <class Law>
 void add_along_count(outcome_table& table, float trials, float probability, uniform_number choice, double mass) {
-    const auto successes = [&](uniform_number number) {
-        return outcome_at<Law>(trials, probability, choice, number).successes;
+    const auto count_at = [&](uniform_number number) {
+        return rarer_count(outcome_at<Law>(trials, probability, choice, number), probability);
     };
     // A stretch of one cell is one count, or many where counts are real or cells wide: those are integrated.
     const bool one_count = Law::integer_counts && table.width() == 1;
-    each_stretch([&](uniform_number number) { return table.cell_of(successes(number)); },
+    each_stretch([&](uniform_number number) { return table.cell_of(count_at(number)); },
                  [&](uniform_number low, uniform_number high, std::size_t) {
                      const double size = static_cast<double>(high - low) + 1;
                      const int points = one_count ? 1 : static_cast<int>(std::min(64., size));
                      for (int i = 0; i < points; ++i) {
                          const auto at = low + static_cast<uniform_number>(size * (i + 0.5) / points);
-                         table.add(successes(at), mass * size / uniforms / points);
+                         table.add(count_at(at), mass * size / uniforms / points);
                      }
                  });
 }
 
-/// The distribution of a law's successes.
+/// The distribution of a law's rarer outcome.
 template <class Law>
 struct enumerate {
     static outcome_table of(float trials, float probability) {
-        outcome_table table(static_cast<double>(trials), static_cast<double>(probability));
+        outcome_table table(trials, probability);
         if constexpr (roles_of<Law>.choice < 0) {
             add_along_count<Law>(table, trials, probability, 0, 1);
         } else {
@@ -194,35 +207,31 @@ struct enumerate {
 template <>
 struct enumerate<mica::bernoulli_sum_binomial> {
     static outcome_table of(float trials, float probability) {
-        outcome_table table(static_cast<double>(trials), static_cast<double>(probability));
+        outcome_table table(trials, probability);
         const float whole = std::floor(trials);
-        each_stretch([&](uniform_number number) { return failures_at(trials, probability, 0, last_uniform, number); },
-                     [&](uniform_number low, uniform_number high, double) {
-                         const double mass = (static_cast<double>(high - low) + 1) / uniforms;
-                         const float n = whole + (uniform_of(low) < trials - whole ? 1.F : 0.F);
-                         sums_by_trials(n, probability) ? add_patterns(table, n, probability, mass)
-                                                        : add_gaussian(table, n, probability, mass);
-                     });
+        const auto trials_drawn = [&](uniform_number number) {
+            return at(trials, 0, 0, last_uniform, number).failures;
+        };
+        each_stretch(trials_drawn, [&](uniform_number low, uniform_number high, float) {
+            const double mass = (static_cast<double>(high - low) + 1) / uniforms;
+            const float n = whole + (uniform_of(low) < trials - whole ? 1.F : 0.F);
+            sums_by_trials(n, probability) ? add_patterns(table, n, probability, mass)
+                                           : add_gaussian(table, n, probability, mass);
+        });
         return table;
     }
 
   private:
     static constexpr unsigned patterns = 1U << 16;
 
-    static mica::counts<double> at(float trials, float probability, unsigned pattern, uniform_number gaussian,
-                                   uniform_number rounding) {
+    static mica::counts<float> at(float trials, float probability, unsigned pattern, uniform_number gaussian,
+                                  uniform_number rounding) {
         unsigned drawn = 0;
-        const auto result = mica::bernoulli_sum_binomial{}(trials, probability, [&] {
+        return mica::bernoulli_sum_binomial{}(trials, probability, [&] {
             const unsigned k = drawn++;
             if (k < 16) return uniform_of((pattern >> k) & 1U ? 0 : last_uniform);
             return uniform_of(k == 16 ? gaussian : rounding);
         });
-        return {static_cast<double>(result.successes), static_cast<double>(result.failures)};
-    }
-
-    static double failures_at(float trials, float probability, unsigned pattern, uniform_number gaussian,
-                              uniform_number rounding) {
-        return at(trials, probability, pattern, gaussian, rounding).failures;
     }
 
     /// Whether the trials' uniforms matter and the Gaussian's does not.
@@ -246,17 +255,18 @@ struct enumerate<mica::bernoulli_sum_binomial> {
                 std::pow(success, ones) * std::pow(1 - success, 16 - ones);
         for (unsigned pattern = 0; pattern < patterns; ++pattern) {
             const auto ones = static_cast<std::size_t>(__builtin_popcount(pattern));
-            table.add(at(n, p, pattern, last_uniform / 2, last_uniform).successes, mass * probability_of_ones[ones]);
+            table.add(rarer_count(at(n, p, pattern, last_uniform / 2, last_uniform), p),
+                      mass * probability_of_ones[ones]);
         }
     }
 
     static void add_gaussian(outcome_table& table, float n, float p, double mass) {
-        const auto successes = [&](uniform_number number) { return at(n, p, 0, number, last_uniform).successes; };
-        each_stretch([&](uniform_number number) { return table.cell_of(successes(number)); },
+        const auto count_at = [&](uniform_number number) { return rarer_count(at(n, p, 0, number, last_uniform), p); };
+        each_stretch([&](uniform_number number) { return table.cell_of(count_at(number)); },
                      [&](uniform_number low, uniform_number high, std::size_t) {
                          const double size = static_cast<double>(high - low) + 1;
                          for (int i = 0; i < 16; ++i)
-                             table.add(successes(low + static_cast<uniform_number>(size * (i + 0.5) / 16)),
+                             table.add(count_at(low + static_cast<uniform_number>(size * (i + 0.5) / 16)),
                                        mass * size / uniforms / 16);
                      });
     }
@@ -269,7 +279,7 @@ template <>
 struct enumerate<mica::exact_binomial> {
     static outcome_table of(float trials, float probability) {
         const auto n = static_cast<double>(trials), p = static_cast<double>(probability);
-        outcome_table table(n, p);
+        outcome_table table(trials, probability);
         if (draws_one(n, p)) {
             each_stretch([&](uniform_number number) { return at(n, p, uniform_at(number), 0.5).count; },
                          [&](uniform_number low, uniform_number high, double count) {
@@ -283,7 +293,7 @@ struct enumerate<mica::exact_binomial> {
             [&](uniform_number number) {
                 const auto first = at(n, p, uniform_at(number), 0x1p-60);
                 // Far out nothing is accepted: beyond either end of the support, so that counts go one way in u.
-                const double beyond = (number < last_uniform / 2) == (p <= 0.5) ? -1 : n + 1;
+                const double beyond = number < last_uniform / 2 ? -1 : n + 1;
                 return first.drawn == 2 ? first.count : beyond;
             },
             [&](uniform_number low, uniform_number high, double count) {
@@ -306,7 +316,7 @@ struct enumerate<mica::exact_binomial> {
         int drawn;
     };
 
-    /// Successes if the first pair of uniforms is (u, v), and how many uniforms were drawn: 2 if it was accepted. The
+    /// The rarer outcome's count if the first pair of uniforms is (u, v), and how many uniforms were drawn: 2 if it was accepted. The
     /// next pair is accepted at the mode.
     static try_result at(double n, double p, double u, double v) {
         int drawn = 0;
@@ -314,7 +324,7 @@ struct enumerate<mica::exact_binomial> {
             ++drawn;
             return drawn == 1 ? u : drawn == 2 ? v : 0.5;
         });
-        return {counts.successes, drawn};
+        return {p > 0.5 ? counts.failures : counts.successes, drawn};
     }
 
     /// Whether the law inverts, which takes one uniform.
@@ -343,7 +353,7 @@ struct enumerate<mica::exact_binomial> {
     }
 };
 
-/// How far a law is from the binomial.
+/// How far a law is from the binomial, all of the rarer outcome's count. N p is its mean.
 struct deviation {
     double total_variation; ///< after rounding to the nearest integer
     double kolmogorov;      ///< largest difference of the distribution functions, likewise
@@ -351,12 +361,12 @@ struct deviation {
     double variance;        ///< V / V_binomial
     double none;            ///< P(0)
     double binomial_none;   ///< (1-p)^N
-    double tail_3, tail_6;  ///< P(X >= k) over the binomial's, the first k where that is at most 1e-3, 1e-6
+    double tail_3, tail_6;  ///< P(X >= k) over the binomial's, the first k where that is at most 1e-3, 1e-6; else NaN
 };
 
 template <class Law>
 deviation deviation_of(float trials, float probability) {
-    const auto n = static_cast<double>(trials), p = static_cast<double>(probability);
+    const double n = static_cast<double>(trials), p = rarer_probability(probability);
     const auto table = enumerate<Law>::of(trials, probability);
     const auto binomial = table.binomial();
     deviation result{};
@@ -368,12 +378,13 @@ deviation deviation_of(float trials, float probability) {
         exact_below += binomial[i];
         result.kolmogorov = std::max(result.kolmogorov, std::abs(below - exact_below));
     }
+    result.tail_3 = result.tail_6 = std::numeric_limits<double>::quiet_NaN();
     double above = 0, exact_above = 0;
     for (std::size_t i = binomial.size(); i-- > 0;) {
         above += table.mass()[i];
         exact_above += binomial[i];
-        if (exact_above <= 1e-3) result.tail_3 = above / exact_above;
-        if (exact_above <= 1e-6) result.tail_6 = above / exact_above;
+        if (exact_above > 0 && exact_above <= 1e-3) result.tail_3 = above / exact_above;
+        if (exact_above > 0 && exact_above <= 1e-6) result.tail_6 = above / exact_above;
     }
     const double part = n - std::floor(n);
     result.mean = table.mean() / (n * p);

@@ -23,7 +23,7 @@ using mica::quantile_binomial;
 /// Successes at one uniform; the second, for the rounding of real trials, rounds down.
 template <class Law>
 double successes_at(float trials, float probability, uniform_number number) {
-    return enumeration::outcome_at<Law>(trials, probability, last_uniform, number).successes;
+    return static_cast<double>(enumeration::outcome_at<Law>(trials, probability, last_uniform, number).successes);
 }
 
 template <int Gates>
@@ -31,7 +31,7 @@ void expect_deviation_at_most(double total_variation, double mean, double varian
     stated_grid::worst_case worst;
     stated_grid::each(
         [&](float trials, float p) {
-            const auto found = stated_grid::deviation_of_rarer<quantile_binomial<Gates>>(trials, p);
+            const auto found = stated_grid::deviation_of<quantile_binomial<Gates>>(trials, p);
             EXPECT_TRUE(found.total_variation <= total_variation) << trials << ' ' << p << ' ' << found.total_variation;
             EXPECT_TRUE(found.mean <= mean) << trials << ' ' << p << ' ' << found.mean;
             EXPECT_TRUE(found.variance <= variance) << trials << ' ' << p << ' ' << found.variance;

@@ -37,14 +37,11 @@ struct worst_case {
     }
 };
 
-/// A law's distances from the binomial, of mean and variance relative to N p and N p q for p <= 1/2; beyond, the mean
-/// relative to N q.
+/// A law's distances from the binomial, those of mean and variance relative to the rarer outcome's.
 template <class Law>
-worst_case deviation_of_rarer(float n, float probability) {
+worst_case deviation_of(float n, float probability) {
     const auto found = enumeration::deviation_of<Law>(n, probability);
-    const auto p = static_cast<double>(probability);
-    return {found.total_variation, std::abs(found.mean - 1) * (p > 0.5 ? p / (1 - p) : 1),
-            std::abs(found.variance - 1)};
+    return {found.total_variation, std::abs(found.mean - 1), std::abs(found.variance - 1)};
 }
 
 } // namespace stated_grid
