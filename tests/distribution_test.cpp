@@ -228,6 +228,14 @@ TEST(Distributions, RefuseWhatIsNoParameters) {
         expect_refused<multinomial>(text);
 }
 
+/// The lines of the README.
+TEST(Distributions, AreUsedAsTheReadmeSays) {
+    std::mt19937_64 generator(2026);
+    mica::binomial_distribution<long long> flashes(1'000'000'000'000, 3e-12);
+    const long long n = flashes(generator);
+    EXPECT_TRUE(n >= 0 && n <= 40) << n; // of a mean of 3
+}
+
 // bad parameters
 
 template <class Make>

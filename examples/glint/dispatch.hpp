@@ -8,6 +8,7 @@
 
 #include <mica/law/dual_gated.hpp>
 #include <mica/law/exact.hpp>
+#include <mica/law/quantile.hpp>
 
 namespace glint {
 
@@ -17,9 +18,10 @@ using compiled_levels = std::index_sequence<2, 3, 4, 5, 6, 7, 8>;
 /// Calls body(Law{}) with the law of that name.
 template <class Body>
 decltype(auto) with_law(const std::string& name, const Body& body) {
+    if (name == "quantile") return body(mica::quantile_binomial<4>{});
     if (name == "dual_gated") return body(mica::dual_gated_binomial{});
     if (name == "exact") return body(mica::exact_binomial{});
-    throw std::invalid_argument("unknown law '" + name + "' (known: dual_gated, exact)");
+    throw std::invalid_argument("unknown law '" + name + "' (known: quantile, dual_gated, exact)");
 }
 
 namespace detail {

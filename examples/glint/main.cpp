@@ -42,7 +42,8 @@ int run(int argc, char** argv) {
         ->capture_default_str();
     render_command->add_option("--levels", render.levels, "brightness levels K of the environment")
         ->capture_default_str();
-    render_command->add_option("--law", render.law, "binomial law: dual_gated or exact")->capture_default_str();
+    render_command->add_option("--law", render.law, "binomial law: quantile, dual_gated or exact")
+        ->capture_default_str();
     render_command->add_option("--interpolate", render.interpolate, "what a pixel blends: counts")
         ->capture_default_str();
     render_command->add_option("--seed", render.seed, "which realisation")->capture_default_str();
@@ -60,7 +61,8 @@ int run(int argc, char** argv) {
     glint::furnace_options furnace;
     CLI::App* const furnace_command =
         app.add_subcommand("furnace", "white furnace: the mean of glint / smooth over many realisations");
-    furnace_command->add_option("--law", furnace.law, "binomial law: dual_gated or exact")->capture_default_str();
+    furnace_command->add_option("--law", furnace.law, "binomial law: quantile, dual_gated or exact")
+        ->capture_default_str();
     furnace_command->add_option("--levels", furnace.levels, "levels K, one or more")->delimiter(',');
     furnace_command->add_option("--roughness", furnace.roughness, "GGX alphas")->delimiter(',');
     furnace_command->add_option("--facets", furnace.facets, "facets per pixel, mean over the sphere")->delimiter(',');

@@ -103,7 +103,7 @@ struct render_options {
     double roughness = 0.1;
     double log_density = 13;
     int levels = 4;
-    std::string law = "dual_gated";
+    std::string law = "quantile";
     std::string interpolate = "counts";
     std::uint32_t seed = 1;
     std::string output = "glint.png";

@@ -38,8 +38,8 @@ void sheet(const sheet_options& options) {
                 mica::glint_material material;
                 material.roughness = roughnesses[row];
                 material.log_density = densities[column];
-                const frame rendered = render_frame<mica::dual_gated_binomial>(seen, tile, tile, material, environment,
-                                                                               table, options.seed);
+                const frame rendered = render_frame<mica::quantile_binomial<4>>(seen, tile, tile, material, environment,
+                                                                                table, options.seed);
                 tone_map(rendered.glint, exposure_of(rendered), picture, left_of(column), tile_top);
                 if (column == 0)
                     tone_map(rendered.smooth, exposure_of(rendered), picture, left_of(columns - 1), tile_top);
