@@ -26,7 +26,7 @@
 namespace mica {
 
 template <std::integral Int = int, class Law = exact_binomial>
-    requires(binomial_law<Law, double>&& Law::integer_counts)
+    requires(Law::integer_counts && binomial_law<Law, double>)
 class binomial_distribution {
   public:
     using result_type = Int;

@@ -47,7 +47,7 @@ inline bool are_probabilities(std::span<const double> values) {
 } // namespace detail
 
 template <std::integral Int = int, class Law = exact_binomial>
-    requires(binomial_law<Law, double>&& Law::integer_counts)
+    requires(Law::integer_counts && binomial_law<Law, double>)
 class multinomial_distribution {
   public:
     using result_type = std::vector<Int>;
