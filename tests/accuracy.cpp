@@ -160,7 +160,7 @@ std::vector<double> masses(float n, float p) {
 
 std::vector<double> binomial_masses(double n, double p) {
     std::vector<double> result;
-    for (double k = 0; k <= n; ++k) result.push_back(pdf(boost::math::binomial(n, p), k));
+    for (double k = 0; k <= n; ++k) result.push_back(statistics::binomial_probability(n, p, k));
     return result;
 }
 

@@ -57,7 +57,7 @@ struct algorithm_1 {
         const bool between = trials > 1 && !some && !one_lost;                    // line 14
         const double mean = 1 + (from_2() - 2) * probability;                     // line 16
         const double variance = (from_2() - 2) * probability * (1 - probability); // line 17
-        const double z = quantile(boost::math::normal(), xi2);
+        const double z = statistics::normal_quantile(xi2);
         const double gaussian = std::fmin(std::fmax(mean + std::sqrt(variance) * z, 1), from_2() - 1); // line 18
         return {every * (from_2() - 1) + some + between * gaussian,                                    // lines 21, 22
                 none * (from_2() - 1) + one_lost + between * (from_2() - gaussian)};
@@ -179,7 +179,6 @@ struct defects {
 defects defects_of_algorithm_1(double trials, double probability) {
     const algorithm_1 paper{trials, probability, no_scale};
     constexpr int points = 1 << 18;
-    const boost::math::binomial binomial(trials, probability);
     const double all = paper.all_succeed(), none = paper.all_fail(), between = 1 - all - none;
     std::vector<double> mass(static_cast<std::size_t>(trials) + 1, 0.);
     double mean = all * trials, squares = all * trials * trials;
@@ -192,7 +191,8 @@ defects defects_of_algorithm_1(double trials, double probability) {
         mass[static_cast<std::size_t>(std::floor(n + 0.5))] += between / points;
     }
     double distance = 0;
-    for (std::size_t k = 0; k < mass.size(); ++k) distance += std::abs(mass[k] - pdf(binomial, static_cast<double>(k)));
+    for (std::size_t k = 0; k < mass.size(); ++k)
+        distance += std::abs(mass[k] - statistics::binomial_probability(trials, probability, static_cast<double>(k)));
     const double expected = trials * probability;
     return {mean / expected, (squares - mean * mean) / (expected * (1 - probability)), distance / 2};
 }

@@ -145,7 +145,7 @@ class outcome_table {
     double interval(double n, double low, double high, std::size_t cell) const {
         if (cell == 0 || cell + 1 == mass_.size() || width_ > 1 || n < 1)
             return statistics::binomial_interval(n, probability_, low, high);
-        return low > n ? 0 : pdf(boost::math::binomial(n, probability_), low);
+        return statistics::binomial_probability(n, probability_, low);
     }
 
     void add_moments(double count, double mass) {

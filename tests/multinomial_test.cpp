@@ -9,7 +9,6 @@
 #include <span>
 #include <vector>
 
-#include <boost/math/special_functions/factorials.hpp>
 #include <gtest/gtest.h>
 
 #include "mica/law/dual_gated.hpp"
@@ -373,7 +372,7 @@ std::vector<double> joint_probabilities(const std::array<double, 3>& p) {
     for (int a = 0; a <= joint_trials; ++a) {
         for (int b = 0; a + b <= joint_trials; ++b) {
             const int c = joint_trials - a - b;
-            const auto factorial = [](int k) { return boost::math::factorial<double>(static_cast<unsigned>(k)); };
+            const auto factorial = [](int k) { return std::tgamma(k + 1.); };
             const double orders = factorial(joint_trials) / (factorial(a) * factorial(b) * factorial(c));
             result[joint_cell(a, b)] = orders * std::pow(p[0], a) * std::pow(p[1], b) * std::pow(p[2], c);
         }

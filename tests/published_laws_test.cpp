@@ -63,7 +63,6 @@ double floored_gated_by_formula(double n, double p, double xi1, double z) {
 }
 
 TEST(FlooredGatedBinomial, FollowsItsFormula) {
-    const boost::math::normal_distribution<double> normal;
     int different = 0;
     for (std::uint32_t i = 0; i < 20000; ++i) {
         mica::uniform_stream<float> choose{11, i};
@@ -74,7 +73,7 @@ TEST(FlooredGatedBinomial, FollowsItsFormula) {
         EXPECT_EQ(drawn, 2U);
         const double expected =
             floored_gated_by_formula(static_cast<double>(trials), static_cast<double>(p), static_cast<double>(xi[0]),
-                                     quantile(normal, static_cast<double>(xi[1])));
+                                     statistics::normal_quantile(static_cast<double>(xi[1])));
         different += static_cast<double>(counts.successes) != expected; // next to a step, by rounding
         EXPECT_NEAR(static_cast<double>(counts.successes), expected, 1);
         EXPECT_EQ(counts.successes + counts.failures, trials);
@@ -83,14 +82,14 @@ TEST(FlooredGatedBinomial, FollowsItsFormula) {
 }
 
 TEST(GaussianBinomial, FollowsItsFormula) {
-    const boost::math::normal_distribution<double> normal;
     for (std::uint32_t i = 0; i < 20000; ++i) {
         mica::uniform_stream<float> choose{12, i};
         const float trials = std::exp2(20 * choose()), p = choose(), xi = choose();
         const auto counts = mica::gaussian_binomial{}(trials, p, [&] { return xi; });
         const double n = static_cast<double>(trials), mean = n * static_cast<double>(p);
         const double spread = std::sqrt(mean * (1 - static_cast<double>(p)));
-        const double expected = std::fmin(std::fmax(mean + spread * quantile(normal, static_cast<double>(xi)), 0), n);
+        const double expected =
+            std::fmin(std::fmax(mean + spread * statistics::normal_quantile(static_cast<double>(xi)), 0), n);
         EXPECT_NEAR(static_cast<double>(counts.successes), expected, 3e-6 * spread + 3e-7 * n);
         EXPECT_NEAR(counts.successes + counts.failures, trials, 1.2e-7F * trials); // one rounding
     }

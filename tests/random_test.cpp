@@ -169,9 +169,8 @@ double independence(Two two) {
 
 TEST(Independence, DesignSeesACorrelationOfTwoPercent) {
     const double effect = 0.02 * std::sqrt(static_cast<double>(correlation_draws));
-    const boost::math::normal normal;
-    const double critical = quantile(complement(normal, statistics::significance() / 2));
-    EXPECT_TRUE(cdf(normal, critical - effect) <= 1e-3);
+    const double critical = -statistics::normal_quantile(statistics::significance() / 2);
+    EXPECT_TRUE(statistics::normal_cdf(critical - effect) <= 1e-3);
 }
 
 template <class Real>

@@ -25,8 +25,7 @@
 
 namespace mica {
 
-template <std::integral Int = int, class Law = exact_binomial>
-    requires(Law::integer_counts && binomial_law<Law, double>)
+template <std::integral Int = int, integer_binomial_law<double> Law = exact_binomial>
 class binomial_distribution {
   public:
     using result_type = Int;

@@ -41,6 +41,10 @@ concept binomial_law = real_number<Real> && std::default_initializable<Law> &&
     { Law::integer_counts } -> std::convertible_to<bool>;
 };
 
+/// A binomial law of integer counts.
+template <class Law, class Real = float>
+concept integer_binomial_law = binomial_law<Law, Real> && Law::integer_counts;
+
 namespace detail {
 
 template <real_number Real>

@@ -46,8 +46,7 @@ inline bool are_probabilities(std::span<const double> values) {
 
 } // namespace detail
 
-template <std::integral Int = int, class Law = exact_binomial>
-    requires(Law::integer_counts && binomial_law<Law, double>)
+template <std::integral Int = int, integer_binomial_law<double> Law = exact_binomial>
 class multinomial_distribution {
   public:
     using result_type = std::vector<Int>;
