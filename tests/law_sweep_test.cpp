@@ -1,8 +1,9 @@
 // tests/law_sweep_test.cpp: no law hangs, returns NaN or infinity, or leaves [0, ceil N], whatever bits it is given.
 //
 // Random bit patterns of N and p, half of them brought to sizes that occur, and uniforms with both extremes among them;
-// all special values in all positions. MICA_SWEEP_INPUTS says how many random inputs each law gets. Also compiled with
-// -ffast-math, so everything is judged by its bits: there the compiler may assume that nothing is infinite or NaN.
+// all special values in all positions. Each law gets SWEEP_INPUTS random inputs, which the build sets, or as many as
+// MICA_SWEEP_INPUTS says in the environment. Also compiled with -ffast-math, so everything is judged by its bits: there
+// the compiler may assume that nothing is infinite or NaN.
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -30,7 +31,7 @@ constexpr std::uint32_t sign_bit = 0x80000000U;
 
 std::uint32_t random_inputs() {
     const char* const asked = std::getenv("MICA_SWEEP_INPUTS");
-    return asked ? static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10)) : 10'000'000;
+    return asked ? static_cast<std::uint32_t>(std::strtoul(asked, nullptr, 10)) : SWEEP_INPUTS;
 }
 
 bool is_nan_bits(std::uint32_t bits) { return (bits & ~sign_bit) > infinity_bits; }

@@ -14,6 +14,7 @@
 #include "random/uniform.hpp"
 #include "random/uniform_stream.hpp"
 
+#include "law/batch.hpp"
 #include "law/bernoulli_sum.hpp"
 #include "law/binomial_distribution.hpp"
 #include "law/binomial_law.hpp"

@@ -92,7 +92,7 @@ MICA_HOST_DEVICE constexpr binomial_parameters<Real> in_domain(Real trials, Real
 /// which in binary32 gives an integer N an extra trial with probability 3 % at N = 1e6.
 template <real_number Real>
 MICA_HOST_DEVICE constexpr Real dithered(Real trials, Real xi) {
-    const Real whole = floor(trials);
+    const Real whole = truncate(trials);
     return whole + select(xi < trials - whole, Real(1), Real(0));
 }
 

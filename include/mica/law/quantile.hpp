@@ -86,21 +86,24 @@ struct quantile_binomial {
         const Real n = detail::dithered(real_trials, xi());
 
         // The recursion multiplies q^N by up to (N p/q)^Gates, so q^N has to underflow to zero.
-        const Real exponent = n * log1p_neg(side.probability);
+        const Real exponent = n * log_complement(side.probability);
         const Real odds = side.probability / (Real(1) - side.probability);
-        Real mass = exp(exponent);                                // P(X = gate)
-        Real above = detail::any_less_tail(side, exponent, mass); // P(X > gate) - tail
+        Real arrangements = exp(exponent);                                // gate! P(X = gate)
+        Real above = detail::any_less_tail(side, exponent, arrangements); // P(X > gate) - tail
         Real passed = Real(0);
+        Scalar factorial = 1;
+        MICA_UNROLL
         for (int gate = 0; gate < Gates; ++gate) {
             const auto k = static_cast<Scalar>(gate);
             passed = passed + select(above > Real(0), Real(1), Real(0));
-            mass = mass * ((n - Real(k)) * odds * Real(1 / (k + 1)));
-            above = above - mass;
+            arrangements = arrangements * ((n - Real(k)) * odds);
+            factorial = factorial * (k + 1);
+            above = above - arrangements * Real(1 / factorial);
         }
 
         constexpr Scalar gates = Gates;
         const Real expansion = detail::cornish_fisher_quotient(n, side.probability, side.z);
-        const Real beyond = maximum(floor(expansion), Real(gates));
+        const Real beyond = truncate(maximum(expansion, Real(gates)));
         const Real drawn = minimum(select(passed < Real(gates), passed, beyond), n);
         return {select(side.failures, n - drawn, drawn), select(side.failures, drawn, n - drawn)};
     }

@@ -79,7 +79,9 @@ template <real_number Real>
 MICA_HOST_DEVICE constexpr pair_of<Real> lone_facet(Real n, const rarer_side<Real>& side) {
     const Real rare = n * side.probability, common = n * (Real(1) - side.probability);
     const auto steepness = twice_reciprocals(rare * (Real(1) - rare), common * (Real(1) - common));
-    return {ramp((rare - side.tail) * steepness.first), ramp((common - side.head) * steepness.second)};
+    const Real rest = Real(1) - side.distance;
+    const Real tail = select(side.many, side.distance, rest), head = select(side.many, rest, side.distance);
+    return {ramp((rare - tail) * steepness.first), ramp((common - head) * steepness.second)};
 }
 
 } // namespace detail
@@ -98,17 +100,18 @@ struct smooth_quantile_binomial {
         const auto side = detail::make_rarer_side(success_probability, xi());
         const Real p = side.probability;
         const Real q = Real(1) - p;
-        const Real whole = maximum(floor(n), Real(1));
+        const Real whole = maximum(truncate(n), Real(1));
         const Real part = clamp(n - whole, Real(0), Real(1));
 
         // The recursion multiplies q^N by up to (N p/q)^Gates, so q^N has to underflow to zero.
-        const Real exponent = whole * log1p_neg(p);
+        const Real exponent = whole * log_complement(p);
         const Real odds = p / q;
         Real mass = exp(exponent);                                // pmf_k of `whole` trials
         Real mass_next = q * mass;                                // and of one more
         Real above = detail::any_less_tail(side, exponent, mass); // S_k - xi
         auto steepness = detail::twice_reciprocals(mass, mass_next);
         Real at_whole = Real(0), at_next = Real(0);
+        MICA_UNROLL
         for (int gate = 0; gate < Gates; ++gate) {
             const auto k = static_cast<Scalar>(gate);
             const Real following = mass * (maximum(whole - Real(k), Real(0)) * odds * Real(1 / (k + 1)));

@@ -6,18 +6,20 @@
 //
 // Largest errors, enforced by tests/numeric_test.cpp (float: every 257th value of the domain and all special ones):
 //
-//   function     domain                              float     double
-//   log          normal, > 0                         2 ulp     2 ulp      (absolute 5e-8, 2e-16 where |log x| < 1/2)
-//   log2         normal, > 0                         2 ulp     2 ulp      (absolute 1e-7, 3e-16 where |log2 x| < 1/2)
-//   log1p_neg    p in [0, 1)                         2 ulp     2 ulp
-//   exp          [-87, 88.37]   ([-708, 709.43])     2 ulp     2 ulp
-//   exp2         [-126, 127]    ([-1022, 1023])      2 ulp     2 ulp
-//   expm1        [-inf, 88.37]  ([-inf, 709.43])     4 ulp     4 ulp      (next to ln2 / 2)
-//   inverse_sqrt normal, > 0                         4 ulp     4 ulp
-//   sqrt         0 and normal                        1 ulp     1 ulp
+//   function        domain                              float     double
+//   log             normal, > 0                         2 ulp     2 ulp   (absolute 5e-8, 2e-16 where |log x| < 1/2)
+//   log2            normal, > 0                         2 ulp     2 ulp   (absolute 1e-7, 3e-16 where |log2 x| < 1/2)
+//   log1p_neg       p in [0, 1)                         2 ulp     2 ulp
+//   log_complement  p in [0, 1/2]                       2 ulp     2 ulp
+//   exp             [-87, 88.37]   ([-708, 709.43])     2 ulp     2 ulp
+//   exp2            [-126, 127]    ([-1022, 1023])      2 ulp     2 ulp
+//   expm1           [-inf, 88.37]  ([-inf, 709.43])     4 ulp     4 ulp   (next to ln2 / 2)
+//   inverse_sqrt    normal, > 0                         4 ulp     4 ulp
+//   sqrt            0 and normal                        1 ulp     1 ulp
 #pragma once
 
 #include <cstddef>
+#include <utility>
 
 #include "number.hpp"
 
@@ -28,9 +30,12 @@ namespace detail {
 /// c[0] + c[1] x + c[2] x^2 + ..., by Horner's rule.
 template <real_number Real, std::size_t Count>
 MICA_HOST_DEVICE constexpr Real polynomial(Real x, const scalar_of<Real> (&c)[Count]) {
-    Real sum = Real(c[Count - 1]);
-    for (std::size_t k = Count - 1; k-- > 0;) sum = sum * x + Real(c[k]);
-    return sum;
+    return [&]<std::size_t... K>(std::index_sequence<K...>) { // g++ -O2 would leave a loop a loop
+        Real sum = Real(c[Count - 1]);
+        ((sum = sum * x + Real(c[Count - 2 - K])), ...);
+        return sum;
+    }
+    (std::make_index_sequence<Count - 1>());
 }
 
 /// Layout and constants of the binary formats.
@@ -121,7 +126,23 @@ MICA_HOST_DEVICE constexpr Real log_of_split(Real exponent, Real f) {
     return exponent * Real(Format::ln2_high) + (exponent * Real(Format::ln2_low) + fraction);
 }
 
-/// y = k ln2 + r, |r| <= ln2/2, as 2^k and r. Below the smallest normal exponential 2^k is 0, above the largest it is
+/// 2^k and k for the integer k nearest to x, which must be the exponent of a normal number.
+template <real_number Real>
+struct nearest_power {
+    Real power;
+    Real exponent;
+};
+
+template <real_number Real>
+MICA_HOST_DEVICE constexpr nearest_power<Real> power_near(Real x) {
+    using Format = format<scalar_of<Real>>;
+    using Scalar = scalar_of<Real>;
+    // With the bias added it is positive, where truncation rounds down, and already the exponent as the format has it.
+    const auto biased = convert<integer_of<Real>>(x + Real(Scalar(Format::bias) + Scalar(0.5)));
+    return {reinterpret<Real>(biased << Format::mantissa_bits), convert<Real>(biased) - Real(Scalar(Format::bias))};
+}
+
+/// y = k ln2 + r, |r| <= ln2/2 but for a rounding, as 2^k and r. Below the smallest normal exponential 2^k is 0, above the largest it is
 /// that of the largest.
 template <real_number Real>
 struct reduced_exponent {
@@ -132,15 +153,11 @@ struct reduced_exponent {
 template <real_number Real>
 MICA_HOST_DEVICE constexpr reduced_exponent<Real> reduce_exponent(Real y) {
     using Format = format<scalar_of<Real>>;
-    using Integer = integer_of<Real>;
     constexpr scalar_of<Real> log2_e = scalar_of<Real>(1.4426950408889634);
     const auto underflows = y < Real(Format::smallest_exponential);
     const Real limited = clamp(y, Real(Format::smallest_exponential), Real(Format::largest_exponential));
-    const Real scaled = limited * Real(log2_e);
-    const Integer k = convert<Integer>(scaled + select(scaled < Real(0), Real(-0.5), Real(0.5)));
-    const Real whole = convert<Real>(k);
-    const Real remainder = (limited - whole * Real(Format::ln2_high)) - whole * Real(Format::ln2_low);
-    const Real power = reinterpret<Real>((k + Integer(Format::bias)) << Format::mantissa_bits);
+    const auto [power, k] = power_near(limited * Real(log2_e));
+    const Real remainder = (limited - k * Real(Format::ln2_high)) - k * Real(Format::ln2_low);
     return {select(underflows, Real(0), power), remainder};
 }
 
@@ -160,6 +177,12 @@ MICA_HOST_DEVICE constexpr Real log2(Real x) {
     const auto parts = detail::split(x);
     const Real f = parts.mantissa - Real(1);
     return parts.exponent + detail::twice_atanh(f / (Real(2) + f)) * Real(log2_e);
+}
+
+/// log(1 - p) for p in [0, 1/2], with relative accuracy down to the smallest p: the series takes p as it is.
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real log_complement(Real p) {
+    return detail::twice_atanh(-p / (Real(2) - p));
 }
 
 /// log(1 - p) for p in [0, 1), with relative accuracy down to the smallest p. p = 1 gives log(0).
@@ -183,13 +206,11 @@ MICA_HOST_DEVICE constexpr Real exp(Real y) {
 template <real_number Real>
 MICA_HOST_DEVICE constexpr Real exp2(Real x) {
     using Format = detail::format<scalar_of<Real>>;
-    using Integer = integer_of<Real>;
     constexpr auto ln2 = scalar_of<Real>(0.6931471805599453);
     constexpr auto largest = scalar_of<Real>(Format::bias);
     const Real limited = clamp(x, Real(1 - largest), Real(largest));
-    const Integer k = convert<Integer>(limited + select(limited < Real(0), Real(-0.5), Real(0.5)));
-    const Real rest = detail::expm1_reduced((limited - convert<Real>(k)) * Real(ln2));
-    const Real power = reinterpret<Real>((k + Integer(Format::bias)) << Format::mantissa_bits);
+    const auto [power, k] = detail::power_near(limited);
+    const Real rest = detail::expm1_reduced((limited - k) * Real(ln2));
     return select(x < Real(1 - largest), Real(0), power + power * rest);
 }
 
@@ -213,6 +234,7 @@ MICA_HOST_DEVICE constexpr Real inverse_sqrt(Real x) {
     using Bits = bits_of<Real>;
     const Real half = x * Real(0.5);
     Real inverse = reinterpret<Real>(Bits(Format::inverse_sqrt_magic) - (reinterpret<Bits>(x) >> 1));
+    MICA_UNROLL
     for (int step = 0; step < Format::inverse_sqrt_steps; ++step)
         inverse = inverse * (Real(1.5) - half * inverse * inverse);
     return inverse;

@@ -127,6 +127,15 @@ MICA_HOST_DEVICE constexpr Number floor(Number x) {
     return select(has_fraction, truncated - select(truncated > x, Number(1), Number(0)), x);
 }
 
+/// The integer part of x >= 0.
+template <real_number Number>
+MICA_HOST_DEVICE constexpr Number truncate(Number x) {
+    using Scalar = scalar_of<Number>;
+    constexpr Scalar all_integers_beyond = Scalar(1) / std::numeric_limits<Scalar>::epsilon();
+    const auto has_fraction = x < Number(all_integers_beyond);
+    return select(has_fraction, convert<Number>(convert<integer_of<Number>>(select(has_fraction, x, Number(0)))), x);
+}
+
 /// Whether x is NaN, read off its bits because -ffast-math deletes x != x.
 template <real_number Number>
 MICA_HOST_DEVICE constexpr mask_of<Number> is_nan(Number x) {

@@ -12,6 +12,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
+#include <utility>
 
 #include "number.hpp"
 
@@ -19,6 +21,16 @@ namespace mica {
 
 template <class T, int W>
 struct pack;
+
+/// How many lanes of T the widest registers hold for which the including file is compiled; 4 to 16 for float.
+template <class T>
+#if defined(__AVX512F__)
+inline constexpr int native_lanes = 64 / sizeof(T);
+#elif defined(__AVX__)
+inline constexpr int native_lanes = 32 / sizeof(T);
+#else
+inline constexpr int native_lanes = 16 / sizeof(T);
+#endif
 
 namespace detail {
 
@@ -68,6 +80,7 @@ struct pack_mask {
     MICA_HOST_DEVICE bool operator[](int i) const { return v[i] != 0; }
 
 #if MICA_VECTOR_EXTENSIONS
+    friend pack_mask operator!=(pack_mask a, pack_mask b) { return {a.v ^ b.v}; }
     friend pack_mask operator&&(pack_mask a, pack_mask b) { return {a.v & b.v}; }
     friend pack_mask operator||(pack_mask a, pack_mask b) { return {a.v | b.v}; }
     friend pack_mask operator!(pack_mask a) { return {~a.v}; }
@@ -77,6 +90,9 @@ struct pack_mask {
         pack_mask result{vector{}};
         for (int i = 0; i < W; ++i) result.v[i] = operation(i) ? element(-1) : element(0);
         return result;
+    }
+    MICA_HOST_DEVICE friend pack_mask operator!=(pack_mask a, pack_mask b) {
+        return each([&](int i) { return a[i] != b[i]; });
     }
     MICA_HOST_DEVICE friend pack_mask operator&&(pack_mask a, pack_mask b) {
         return each([&](int i) { return a[i] && b[i]; });
@@ -124,18 +140,18 @@ struct pack {
     /// W consecutive elements in memory.
     MICA_HOST_DEVICE static pack load(const T* from) {
         pack result;
-        for (int i = 0; i < W; ++i) result.v[i] = from[i];
+        std::memcpy(&result.v, from, sizeof(vector)); // lane by lane it would go through memory once more
         return result;
     }
-    MICA_HOST_DEVICE void store(T* to) const {
-        for (int i = 0; i < W; ++i) to[i] = v[i];
-    }
+    MICA_HOST_DEVICE void store(T* to) const { std::memcpy(to, &v, sizeof(vector)); }
 
     /// start, start + 1, ..., start + W - 1
     MICA_HOST_DEVICE static pack iota(T start) {
-        pack result;
-        for (int i = 0; i < W; ++i) result.v[i] = static_cast<T>(start + static_cast<T>(i));
-        return result;
+        // Written out, not a loop: one constant, which never sees memory lane by lane.
+        return [start]<int... Lane>(std::integer_sequence<int, Lane...>) {
+            return pack(vector{static_cast<T>(Lane)...}) + pack(start);
+        }
+        (std::make_integer_sequence<int, W>());
     }
 
 #if MICA_VECTOR_EXTENSIONS
@@ -207,6 +223,27 @@ MICA_HOST_DEVICE inline pack<T, W> select(pack_mask<sizeof(T), W> mask, pack<T, 
     return pack<T, W>::each([&](int i) { return mask[i] ? if_true[i] : if_false[i]; });
 #endif
 }
+
+// The instructions for the smaller and the larger of two numbers say what minimum() and maximum() of number.hpp say, to
+// the NaN; clang finds them by itself, g++ 12 makes a comparison and a blend.
+#if MICA_VECTOR_EXTENSIONS && !defined(__clang__) && defined(__SSE2__)
+#define MICA_PACK_MINMAX(T, W, smaller, larger)                                                                        \
+    inline pack<T, W> minimum(const pack<T, W>& a, const pack<T, W>& b) { return pack<T, W>(smaller(a.v, b.v)); }      \
+    inline pack<T, W> maximum(const pack<T, W>& a, const pack<T, W>& b) { return pack<T, W>(larger(a.v, b.v)); }
+MICA_PACK_MINMAX(float, 4, __builtin_ia32_minps, __builtin_ia32_maxps)
+MICA_PACK_MINMAX(double, 2, __builtin_ia32_minpd, __builtin_ia32_maxpd)
+#if defined(__SSE4_1__)
+MICA_PACK_MINMAX(std::int32_t, 4, __builtin_ia32_pminsd128, __builtin_ia32_pmaxsd128)
+#endif
+#if defined(__AVX__)
+MICA_PACK_MINMAX(float, 8, __builtin_ia32_minps256, __builtin_ia32_maxps256)
+MICA_PACK_MINMAX(double, 4, __builtin_ia32_minpd256, __builtin_ia32_maxpd256)
+#endif
+#if defined(__AVX2__)
+MICA_PACK_MINMAX(std::int32_t, 8, __builtin_ia32_pminsd256, __builtin_ia32_pmaxsd256)
+#endif
+#undef MICA_PACK_MINMAX
+#endif
 
 template <std::size_t Bytes, int W>
 MICA_HOST_DEVICE inline bool any(pack_mask<Bytes, W> mask) {
