@@ -2,8 +2,9 @@
 //
 //     accuracy tables           the tables of docs/accuracy.md, as Markdown
 //     accuracy figures FOLDER   the numbers behind its pictures, as text files that tools/draw_accuracy reads
+//     accuracy worst            a line for each law: name, largest TV, errors of mean and variance over the stated grid
 //
-// tools/accuracy runs both.
+// tools/accuracy runs the first two, tools/ladder the third.
 #include <cstdio>
 #include <fstream>
 #include <stdexcept>
@@ -56,6 +57,28 @@ void print_worst_case(Law) {
     stated_grid::each([&](float n, float p) { worst.see(stated_grid::deviation_of<Law>(n, p)); });
     std::printf("| %s | %.2g | %.2g | %.2g |\n", law_name(Law{}).c_str(), worst.total_variation, worst.mean,
                 worst.variance);
+}
+
+/// Every law on the ladder. The exact law takes seconds a place, so it is judged at a few.
+void worst() {
+    const auto print = [](auto law, double factor) {
+        stated_grid::worst_case worst;
+        stated_grid::each([&](float n, float p) { worst.see(stated_grid::deviation_of<decltype(law)>(n, p)); }, factor);
+        std::printf("%s %.3g %.3g %.3g\n", law_name(law).c_str(), worst.total_variation, worst.mean, worst.variance);
+        std::fflush(stdout);
+    };
+    print(mica::gaussian_binomial{}, 1.25);
+    print(mica::bernoulli_sum_binomial{}, 1.25);
+    print(mica::floored_gated_binomial{}, 1.25);
+    print(mica::gated_binomial{}, 1.25);
+    print(mica::dual_gated_binomial{}, 1.25);
+    print(mica::quantile_binomial<1>{}, 1.25);
+    print(mica::quantile_binomial<2>{}, 1.25);
+    print(mica::quantile_binomial<4>{}, 1.25);
+    print(mica::quantile_binomial<8>{}, 1.25);
+    print(mica::quantile_binomial<16>{}, 1.25);
+    print(mica::smooth_quantile_binomial<4>{}, 1.25);
+    print(mica::exact_binomial{}, 30);
 }
 
 double exact_gate(float n, float p) { return std::exp(static_cast<double>(n) * std::log1p(-static_cast<double>(p))); }
@@ -218,11 +241,12 @@ int main(int argc, char** argv) {
     const std::string what = argc > 1 ? argv[1] : "";
     try {
         if (what == "tables" && argc == 2) return tables(), 0;
+        if (what == "worst" && argc == 2) return worst(), 0;
         if (what == "figures" && argc == 3) return figures(argv[2]), 0;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "accuracy: %s\n", error.what());
         return 2;
     }
-    std::fprintf(stderr, "accuracy: say 'tables' or 'figures FOLDER'\n");
+    std::fprintf(stderr, "accuracy: say 'tables', 'figures FOLDER' or 'worst'\n");
     return 2;
 }

@@ -53,7 +53,8 @@ MICA_HOST_DEVICE inline Real difference_of_products(Real a, Real b, Real c, Real
 /// of Real is 0 or the largest finite Real).
 template <scalar_number Real>
 MICA_HOST_DEVICE footprint<Real> make_footprint(const uv_derivatives<Real>& m) {
-    const Real size = maximum(maximum(abs(m.du_dx), abs(m.dv_dx)), maximum(abs(m.du_dy), abs(m.dv_dy)));
+    const Real size =
+        maximum(maximum(mica::abs(m.du_dx), mica::abs(m.dv_dx)), maximum(mica::abs(m.du_dy), mica::abs(m.dv_dy)));
     const bool undefined = is_nan(m.du_dx) || is_nan(m.dv_dx) || is_nan(m.du_dy) || is_nan(m.dv_dy);
     if (undefined || !(size > Real(0)) || size > std::numeric_limits<Real>::max()) return {0, 0, 0, 1, 0};
 
@@ -69,7 +70,7 @@ MICA_HOST_DEVICE footprint<Real> make_footprint(const uv_derivatives<Real>& m) {
     const Real half_difference = (a - d) / 2;
     const Real root = std::sqrt(half_difference * half_difference + b * b);
     const Real sigma_max = std::sqrt((a + d) / 2 + root);
-    const Real determinant = abs(detail::difference_of_products(ux, vy, uy, vx));
+    const Real determinant = mica::abs(detail::difference_of_products(ux, vy, uy, vx));
     const Real sigma_min = clamp(determinant / sigma_max, sigma_max / Real(largest_footprint_ratio), sigma_max);
 
     // Direction of the major axis from +u: atan2(2b, a-d) / 2, which needs no case for b = 0; from +v a quarter turn

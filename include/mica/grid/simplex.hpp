@@ -45,7 +45,7 @@ MICA_HOST_DEVICE std::array<simplex_vertex<Real>, 3> enclosing_simplex(uv_point<
     constexpr Real one_over_sqrt3 = Real(0.57735026918962576451);
     const Real x = clamp(point.u - point.v * one_over_sqrt3, -Real(largest_cell), Real(largest_cell));
     const Real y = clamp(point.v * (2 * one_over_sqrt3), -Real(largest_cell), Real(largest_cell));
-    const Real floor_x = floor(x), floor_y = floor(y);
+    const Real floor_x = mica::floor(x), floor_y = mica::floor(y);
     const auto i = static_cast<std::int32_t>(floor_x);
     const auto j = static_cast<std::int32_t>(floor_y);
     const Real fx = x - floor_x, fy = y - floor_y;

@@ -100,8 +100,9 @@ MICA_HOST_DEVICE std::array<tetrahedron_vertex<Real>, 4> enclosing_tetrahedron(c
                                                                                Real scale) {
     const detail::prism<Real> base = detail::enclosing_prism(pixel.ratio, pixel.orientation);
 
-    const Real lambda = clamp(log2(pixel.sigma_min) + log2(scale), Real(smallest_level), Real(largest_level));
-    const Real floor_lambda = floor(lambda);
+    const Real lambda =
+        clamp(mica::log2(pixel.sigma_min) + mica::log2(scale), Real(smallest_level), Real(largest_level));
+    const Real floor_lambda = mica::floor(lambda);
     const int level = static_cast<int>(floor_lambda);
     const Real fraction = lambda - floor_lambda;
 

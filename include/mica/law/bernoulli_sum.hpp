@@ -35,7 +35,7 @@ struct bernoulli_sum_binomial {
             const auto succeeds = trial_xi[k] < p && n > Real(static_cast<scalar_of<Real>>(k));
             sum = sum + select(succeeds, Real(1), Real(0));
         }
-        const Real gaussian = clamp(floor(n * p + sqrt(n * p * (Real(1) - p)) * z), Real(0), n);
+        const Real gaussian = clamp(mica::floor(n * p + mica::sqrt(n * p * (Real(1) - p)) * z), Real(0), n);
         const auto few = n <= Real(static_cast<scalar_of<Real>>(most_trials)) && n * p <= Real(5);
         const Real successes = select(few, sum, gaussian);
         return {successes, n - successes};

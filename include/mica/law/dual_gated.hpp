@@ -37,7 +37,7 @@ struct basic_dual_gated_binomial {
         // N < 2 lies between integers: weight `two` of the law for N >= 2, `one` of that for 1, the rest for 0.
         const Real n_from_2 = maximum(n, Real(2));
         const Real two = clamp(n - Real(1), Real(0), Real(1));
-        const Real one = maximum(Real(0), Real(1) - abs(Real(1) - n));
+        const Real one = maximum(Real(0), Real(1) - mica::abs(Real(1) - n));
 
         // On xi from 0: N successes, one success, the Gaussian (N < 1: nothing), one failure, N failures.
         const Real all_succeed = two * Gate::none(n_from_2, q);
@@ -51,7 +51,7 @@ struct basic_dual_gated_binomial {
         const auto between = !success_side && !failure_side && n > Real(1);
 
         const Real mean = Real(1) + (n_from_2 - Real(2)) * p;
-        const Real deviation = sqrt((n_from_2 - Real(2)) * p * q);
+        const Real deviation = mica::sqrt((n_from_2 - Real(2)) * p * q);
         const Real gaussian = clamp(mean + deviation * normal_quantile(normal_xi), Real(1), n_from_2 - Real(1));
 
         const Real succeeded = select(gate_xi < all_succeed, n_from_2, Real(1));

@@ -137,8 +137,8 @@ struct exact_binomial {
             counts<Real> result{Real(0), Real(0)};
             for (int i = 0; i < lanes_of<Real>; ++i) {
                 const auto drawn = one_lane(lane(n, i), lane(p, i), lane_of(stream, i));
-                result.successes.set(i, drawn.successes);
-                result.failures.set(i, drawn.failures);
+                set_lane(result.successes, i, drawn.successes);
+                set_lane(result.failures, i, drawn.failures);
             }
             return result;
         }

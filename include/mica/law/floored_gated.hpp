@@ -31,9 +31,9 @@ struct basic_floored_gated_binomial {
         const Real z = normal_quantile(xi());
 
         const Real rest = maximum(n - Real(1), Real(0));
-        const Real gaussian = clamp(rest * p + sqrt(rest * p * (Real(1) - p)) * z, Real(0), n);
-        const Real ceiling = -floor(-n);
-        const Real successes = select(passes, minimum(Real(1) + floor(gaussian), ceiling), Real(0));
+        const Real gaussian = clamp(rest * p + mica::sqrt(rest * p * (Real(1) - p)) * z, Real(0), n);
+        const Real ceiling = -mica::floor(-n);
+        const Real successes = select(passes, minimum(Real(1) + mica::floor(gaussian), ceiling), Real(0));
         return {successes, maximum(n - successes, Real(0))};
     }
 };

@@ -35,7 +35,7 @@ struct basic_gated_binomial {
         const auto below_one = n < Real(1);
         const auto passes = gate_xi < select(below_one, n * p, Gate::any(n, p));
         const Real rest = maximum(n - Real(1), Real(0));
-        const Real gaussian = clamp(Real(1) + rest * p + sqrt(rest * p * q) * z, Real(1), maximum(n, Real(1)));
+        const Real gaussian = clamp(Real(1) + rest * p + mica::sqrt(rest * p * q) * z, Real(1), maximum(n, Real(1)));
         const Real successes = select(passes, gaussian, Real(0));
         const auto lone_failure = !passes && gate_xi >= Real(1) - n * q && q > Real(0);
         return {successes, select(below_one, select(lone_failure, Real(1), Real(0)), n - successes)};

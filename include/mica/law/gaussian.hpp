@@ -20,7 +20,7 @@ struct gaussian_binomial {
     template <real_number Real, class Uniform>
     MICA_HOST_DEVICE constexpr counts<Real> operator()(Real trials, Real probability, Uniform&& xi) const {
         const auto [n, p] = detail::in_domain(trials, probability);
-        const Real deviation = sqrt(n * p * (Real(1) - p));
+        const Real deviation = mica::sqrt(n * p * (Real(1) - p));
         const Real successes = clamp(n * p + deviation * normal_quantile(xi()), Real(0), n);
         return {successes, n - successes};
     }

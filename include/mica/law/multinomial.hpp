@@ -40,14 +40,25 @@ MICA_HOST_DEVICE constexpr decltype(auto) node_stream(Uniform& stream, std::uint
         return static_cast<Uniform&>(stream);
 }
 
+/// Trials of a node, an integer for laws of integer counts, and a probability of at most 1/2.
+template <class Law, real_number Real, class Uniform>
+MICA_HOST_DEVICE constexpr counts<Real> divided(Real trials, Real probability, Uniform& xi) {
+    if constexpr (requires { Law{}.rarer_successes(trials, probability, xi); }) {
+        const Real successes = Law{}.rarer_successes(trials, probability, xi);
+        return {successes, trials - successes};
+    } else {
+        return Law{}(trials, probability, xi);
+    }
+}
+
 /// What the left and the right half of a node receive of its trials, given the halves' probabilities.
 template <class Law, real_number Real, class Uniform>
-MICA_HOST_DEVICE constexpr counts<Real> divide_trials(Real trials, Real left, Real right, Uniform&& xi) {
+MICA_FLATTEN MICA_HOST_DEVICE constexpr counts<Real> divide_trials(Real trials, Real left, Real right, Uniform&& xi) {
     const auto left_is_rarer = left <= right;
     const Real rarer = select(left_is_rarer, left, right);
     const Real total = left + right;
     const Real probability = select(total > Real(0), rarer / select(total > Real(0), total, Real(1)), Real(0));
-    const counts<Real> drawn = Law{}(trials, probability, xi);
+    const counts<Real> drawn = divided<Law>(trials, probability, xi);
     // Both halves 0 happens only below a node whose probability is 0, and that has received nothing.
     return {select(left_is_rarer, drawn.successes, drawn.failures),
             select(left_is_rarer, drawn.failures, drawn.successes)};
@@ -58,8 +69,7 @@ MICA_HOST_DEVICE constexpr counts<Real> divide_trials(Real trials, Real left, Re
 template <class Law, real_number Real, class Uniform>
 MICA_HOST_DEVICE constexpr Real categorised_trials(Real trials, Real total, Uniform& stream) {
     if constexpr (Law::integer_counts) {
-        auto&& rounding = node_stream(stream, 0U);
-        trials = dithered(trials, rounding());
+        trials = dithered(trials, stream());
     }
     using Scalar = scalar_of<Real>;
     const auto complete = total >= Real(1 - 4 * std::numeric_limits<Scalar>::epsilon());

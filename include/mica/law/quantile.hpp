@@ -80,16 +80,30 @@ struct quantile_binomial {
 
     template <real_number Real, class Uniform>
     MICA_HOST_DEVICE constexpr counts<Real> operator()(Real trials, Real probability, Uniform&& xi) const {
-        using Scalar = scalar_of<Real>;
         const auto [real_trials, p] = detail::in_domain(trials, probability);
         const auto side = detail::make_rarer_side(p, xi());
         const Real n = detail::dithered(real_trials, xi());
+        const Real rarer = count(n, side.probability, side.variate);
+        return {select(side.failures, n - rarer, rarer), select(side.failures, rarer, n - rarer)};
+    }
 
+    /// The successes where nothing needs to be checked, rounded or mirrored: finite integer trials >= 0, probability in
+    /// [0, 1/2]. The same as above with the first of its two uniforms. What a multinomial asks at each of its nodes.
+    template <real_number Real, class Uniform>
+    MICA_HOST_DEVICE constexpr Real rarer_successes(Real trials, Real probability, Uniform&& xi) const {
+        const Real u = xi();
+        return count(trials, probability, detail::make_count_variate(u, u < Real(0.5)));
+    }
+
+  private:
+    template <real_number Real>
+    MICA_HOST_DEVICE static constexpr Real count(Real n, Real p, const detail::count_variate<Real>& xi) {
+        using Scalar = scalar_of<Real>;
         // The recursion multiplies q^N by up to (N p/q)^Gates, so q^N has to underflow to zero.
-        const Real exponent = n * log_complement(side.probability);
-        const Real odds = side.probability / (Real(1) - side.probability);
-        Real arrangements = exp(exponent);                                // gate! P(X = gate)
-        Real above = detail::any_less_tail(side, exponent, arrangements); // P(X > gate) - tail
+        const Real exponent = n * log_complement(p);
+        const Real odds = p / (Real(1) - p);
+        Real arrangements = mica::exp(exponent);                        // gate! P(X = gate)
+        Real above = detail::any_less_tail(xi, exponent, arrangements); // P(X > gate) - tail
         Real passed = Real(0);
         Scalar factorial = 1;
         MICA_UNROLL
@@ -102,10 +116,9 @@ struct quantile_binomial {
         }
 
         constexpr Scalar gates = Gates;
-        const Real expansion = detail::cornish_fisher_quotient(n, side.probability, side.z);
+        const Real expansion = detail::cornish_fisher_quotient(n, p, xi.z);
         const Real beyond = truncate(maximum(expansion, Real(gates)));
-        const Real drawn = minimum(select(passed < Real(gates), passed, beyond), n);
-        return {select(side.failures, n - drawn, drawn), select(side.failures, drawn, n - drawn)};
+        return minimum(select(passed < Real(gates), passed, beyond), n);
     }
 };
 

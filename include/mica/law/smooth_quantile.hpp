@@ -66,7 +66,7 @@ MICA_HOST_DEVICE constexpr Real smooth_expansion(Real m, Real p, Real z) {
     using Scalar = scalar_of<Real>;
     const Real w = p * (Real(1) - p);
     const Real d = Real(1) - p - p;
-    const Real s = sqrt(maximum(m * w, Real(1e-8F)));
+    const Real s = mica::sqrt(maximum(m * w, Real(1e-8F)));
     const Real x = clamp(z, Real(-3) * s, (Real(4) + Real(5) * d) * s);
     const Real x2 = x * x;
     const Real skewness = d * (x2 - Real(1)) * Real(Scalar(1) / 6);
@@ -79,8 +79,9 @@ template <real_number Real>
 MICA_HOST_DEVICE constexpr pair_of<Real> lone_facet(Real n, const rarer_side<Real>& side) {
     const Real rare = n * side.probability, common = n * (Real(1) - side.probability);
     const auto steepness = twice_reciprocals(rare * (Real(1) - rare), common * (Real(1) - common));
-    const Real rest = Real(1) - side.distance;
-    const Real tail = select(side.many, side.distance, rest), head = select(side.many, rest, side.distance);
+    const auto& xi = side.variate;
+    const Real rest = Real(1) - xi.distance;
+    const Real tail = select(xi.many, xi.distance, rest), head = select(xi.many, rest, xi.distance);
     return {ramp((rare - tail) * steepness.first), ramp((common - head) * steepness.second)};
 }
 
@@ -106,9 +107,9 @@ struct smooth_quantile_binomial {
         // The recursion multiplies q^N by up to (N p/q)^Gates, so q^N has to underflow to zero.
         const Real exponent = whole * log_complement(p);
         const Real odds = p / q;
-        Real mass = exp(exponent);                                // pmf_k of `whole` trials
-        Real mass_next = q * mass;                                // and of one more
-        Real above = detail::any_less_tail(side, exponent, mass); // S_k - xi
+        Real mass = mica::exp(exponent);                                  // pmf_k of `whole` trials
+        Real mass_next = q * mass;                                        // and of one more
+        Real above = detail::any_less_tail(side.variate, exponent, mass); // S_k - xi
         auto steepness = detail::twice_reciprocals(mass, mass_next);
         Real at_whole = Real(0), at_next = Real(0);
         MICA_UNROLL
@@ -144,7 +145,7 @@ struct smooth_quantile_binomial {
         const auto below_next = n < Real(gates + 1);
         const Real m = maximum(n, Real(gates + 1));
         const Real weight = clamp(n - Real(gates), Real(0), Real(1));
-        const Real expansion = detail::smooth_expansion(m, p, side.z);
+        const Real expansion = detail::smooth_expansion(m, p, side.variate.z);
         const Real beyond = maximum(Real(0), expansion - Real(gates));
         const Real blend = clamp((p - Real(0.45F)) * Real(20), Real(0), Real(1));
         const Real replaced = select(below_next, at_next, gated) + beyond;

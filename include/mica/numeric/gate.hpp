@@ -34,14 +34,14 @@ struct log1p_gate {
     /// (1-p)^N
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real none(Real trials, Real probability) {
-        const Real power = exp(trials * log1p_neg(probability));
+        const Real power = mica::exp(trials * log1p_neg(probability));
         return select(detail::certain(trials, probability), Real(0), power);
     }
 
     /// 1 - (1-p)^N
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real any(Real trials, Real probability) {
-        const Real complement = -expm1(trials * log1p_neg(probability));
+        const Real complement = -mica::expm1(trials * log1p_neg(probability));
         return select(detail::certain(trials, probability), Real(1), complement);
     }
 };
@@ -53,12 +53,12 @@ struct log1p_gate {
 struct scaled_gate {
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real none(Real trials, Real probability) {
-        return select(detail::certain(trials, probability), Real(0), exp(exponent(trials, probability)));
+        return select(detail::certain(trials, probability), Real(0), mica::exp(exponent(trials, probability)));
     }
 
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real any(Real trials, Real probability) {
-        return select(detail::certain(trials, probability), Real(1), -expm1(exponent(trials, probability)));
+        return select(detail::certain(trials, probability), Real(1), -mica::expm1(exponent(trials, probability)));
     }
 
   private:
@@ -67,7 +67,7 @@ struct scaled_gate {
         constexpr auto epsilon = scalar_of<Real>(2.8840315031266057e-4); // 10^-3.54
         const Real p = maximum(probability, Real(std::numeric_limits<scalar_of<Real>>::min()));
         const Real c = maximum(Real(1), Real(epsilon) / p);
-        return trials / c * log(Real(1) - c * probability);
+        return trials / c * mica::log(Real(1) - c * probability);
     }
 };
 
@@ -78,7 +78,7 @@ struct scaled_gate {
 struct naive_gate {
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real none(Real trials, Real probability) {
-        const Real power = exp(trials * log(Real(1) - probability));
+        const Real power = mica::exp(trials * mica::log(Real(1) - probability));
         return select(detail::certain(trials, probability), Real(0), power);
     }
 

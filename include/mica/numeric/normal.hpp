@@ -48,7 +48,7 @@ MICA_HOST_DEVICE constexpr Real quantile_size(Real u) {
     const Real x = Real(0.5) - u;
     const Real centre_argument = Real(0.180625) - x * x;
     const Real centre = x * polynomial(centre_argument, a) / polynomial(centre_argument, b);
-    const Real r = sqrt(-log(u));
+    const Real r = mica::sqrt(-mica::log(u));
     const Real middle = polynomial(r - Real(1.6), c) / polynomial(r - Real(1.6), d);
     const Real far = polynomial(r - Real(5), e) / polynomial(r - Real(5), f);
     return select(x <= Real(0.425), centre, select(r <= Real(5), middle, far));
@@ -63,7 +63,7 @@ MICA_HOST_DEVICE constexpr Real quantile_size(Real u) {
                            0.0006147191401F, -1.158013183e-5F, -9.01104118e-6F, 8.9274453e-7F};
     constexpr float t[] = {4.574654741F,     1.423759928F,    0.005152925809F,
                            -0.002828866078F, 0.001049097567F, -0.000239227383F};
-    const Real w = minimum(-log(Real(4) * u * (Real(1) - u)), Real(21));
+    const Real w = minimum(-mica::log(Real(4) * u * (Real(1) - u)), Real(21));
     const Real centre = (Real(0.5) - u) * polynomial(w - Real(2.5F), c);
     const Real tail = polynomial(w * inverse_sqrt(w) - Real(3.4F), t);
     return select(w < Real(5), centre, tail);

@@ -90,7 +90,14 @@ MICA_HOST_DEVICE constexpr Number lane(Number value, int) {
     return value;
 }
 
-// From here on in terms of the words above, so the same for scalars and packs.
+/// Sets lane `i`.
+template <arithmetic Number>
+MICA_HOST_DEVICE constexpr void set_lane(Number& number, int, Number value) {
+    number = value;
+}
+
+// From here on in terms of the words above, so the same for scalars and packs. Laws call the functions that other
+// libraries have under the same names as mica::exp(), mica::sqrt(), ...: theirs give other last bits.
 
 /// The smaller; b where a is NaN.
 template <class Number>

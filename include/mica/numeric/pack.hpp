@@ -80,7 +80,6 @@ struct pack_mask {
     MICA_HOST_DEVICE bool operator[](int i) const { return v[i] != 0; }
 
 #if MICA_VECTOR_EXTENSIONS
-    friend pack_mask operator!=(pack_mask a, pack_mask b) { return {a.v ^ b.v}; }
     friend pack_mask operator&&(pack_mask a, pack_mask b) { return {a.v & b.v}; }
     friend pack_mask operator||(pack_mask a, pack_mask b) { return {a.v | b.v}; }
     friend pack_mask operator!(pack_mask a) { return {~a.v}; }
@@ -90,9 +89,6 @@ struct pack_mask {
         pack_mask result{vector{}};
         for (int i = 0; i < W; ++i) result.v[i] = operation(i) ? element(-1) : element(0);
         return result;
-    }
-    MICA_HOST_DEVICE friend pack_mask operator!=(pack_mask a, pack_mask b) {
-        return each([&](int i) { return a[i] != b[i]; });
     }
     MICA_HOST_DEVICE friend pack_mask operator&&(pack_mask a, pack_mask b) {
         return each([&](int i) { return a[i] && b[i]; });
@@ -276,6 +272,11 @@ MICA_HOST_DEVICE inline To reinterpret(pack<T, W> value) {
 template <class T, int W>
 MICA_HOST_DEVICE inline T lane(pack<T, W> value, int i) {
     return value[i];
+}
+
+template <class T, int W>
+MICA_HOST_DEVICE inline void set_lane(pack<T, W>& number, int i, T value) {
+    number.set(i, value);
 }
 
 } // namespace mica

@@ -17,6 +17,14 @@
 
 namespace mica {
 
+namespace detail {
+/// lane(), where a member of that name hides it.
+template <class Number>
+MICA_HOST_DEVICE constexpr auto lane_of_number(const Number& number, int i) {
+    return lane(number, i);
+}
+} // namespace detail
+
 /// uniform_stream<Real> xi{seed, index}; xi() is the next Real in the open (0,1).
 ///
 /// seed and index are 32-bit (index_of<Real>: for a pack, one per lane). double takes two hashes a draw.
@@ -49,12 +57,13 @@ class uniform_stream {
 
     /// Stream number `node` of a family with this stream's place in it; this one does not move.
     MICA_HOST_DEVICE constexpr uniform_stream substream(std::uint32_t node) const {
-        return uniform_stream(hash(key_, index_type(node)), index_, 0);
+        return uniform_stream(hash(key_ ^ index_type(node)), index_, 0);
     }
 
     /// The stream of lane i, standing where this one stands.
     MICA_HOST_DEVICE constexpr uniform_stream<scalar_of<Real>> lane(int i) const {
-        return uniform_stream<scalar_of<Real>>(mica::lane(key_, i), mica::lane(index_, i), counter_);
+        return uniform_stream<scalar_of<Real>>(detail::lane_of_number(key_, i), detail::lane_of_number(index_, i),
+                                               counter_);
     }
 
   private:
