@@ -44,7 +44,7 @@
 
 // A function into which all that it calls is inlined: packs that are passed through memory cost a fifth.
 #ifndef MICA_FLATTEN
-#if defined(__GNUC__) && !defined(__CUDACC__)
+#if MICA_VECTOR_EXTENSIONS
 #define MICA_FLATTEN __attribute__((flatten))
 #else
 #define MICA_FLATTEN

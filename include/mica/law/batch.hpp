@@ -92,9 +92,9 @@ MICA_FLATTEN void sample(const Law& law, scalar_of<Number> trials, scalar_of<Num
 }
 
 template <class Number, std::size_t K, class Law>
-void sample(const multinomial<K, Law>& law, std::span<const scalar_of<Number>> trials,
-            const std::array<std::span<const scalar_of<Number>>, K>& probabilities, std::uint32_t seed,
-            const std::array<std::span<scalar_of<Number>>, K>& counts, std::uint32_t first) {
+MICA_FLATTEN void sample(const multinomial<K, Law>& law, std::span<const scalar_of<Number>> trials,
+                         const std::array<std::span<const scalar_of<Number>>, K>& probabilities, std::uint32_t seed,
+                         const std::array<std::span<scalar_of<Number>>, K>& counts, std::uint32_t first) {
     std::size_t size = trials.size();
     for (std::size_t k = 0; k < K; ++k) {
         MICA_ASSERT(probabilities[k].size() == trials.size() && counts[k].size() == trials.size());

@@ -138,8 +138,10 @@ MICA_HOST_DEVICE constexpr nearest_power<Real> power_near(Real x) {
     using Format = format<scalar_of<Real>>;
     using Scalar = scalar_of<Real>;
     // With the bias added it is positive, where truncation rounds down, and already the exponent as the format has it.
-    const auto biased = convert<integer_of<Real>>(x + Real(Scalar(Format::bias) + Scalar(0.5)));
-    return {reinterpret<Real>(biased << Format::mantissa_bits), convert<Real>(biased) - Real(Scalar(Format::bias))};
+    // It is taken off as an integer: of floats, -ffast-math would spread the difference over what follows.
+    using Integer = integer_of<Real>;
+    const Integer biased = convert<Integer>(x + Real(Scalar(Format::bias) + Scalar(0.5)));
+    return {reinterpret<Real>(biased << Format::mantissa_bits), convert<Real>(biased - Integer(Format::bias))};
 }
 
 /// y = k ln2 + r, |r| <= ln2/2 but for a rounding, as 2^k and r. Below the smallest normal exponential 2^k is 0, above the largest it is
