@@ -18,26 +18,19 @@ namespace {
 
 using streams::measure;
 
-struct boost_taus88 {
-    boost::random::taus88 generator;
+/// A distribution of the standard's kind, made anew for each draw.
+template <class Distribution, class Generator>
+struct distribution_peer {
+    Generator generator;
     std::int64_t operator()(std::int64_t trials, double probability) {
-        return boost::random::binomial_distribution<std::int64_t>(trials, probability)(generator);
+        return Distribution(trials, probability)(generator);
     }
 };
 
-struct boost_mt19937 {
-    boost::random::mt19937 generator;
-    std::int64_t operator()(std::int64_t trials, double probability) {
-        return boost::random::binomial_distribution<std::int64_t>(trials, probability)(generator);
-    }
-};
-
-struct std_mt19937 {
-    std::mt19937 generator;
-    std::int64_t operator()(std::int64_t trials, double probability) {
-        return std::binomial_distribution<std::int64_t>(trials, probability)(generator);
-    }
-};
+using boost_binomial = boost::random::binomial_distribution<std::int64_t>;
+using boost_taus88 = distribution_peer<boost_binomial, boost::random::taus88>;
+using boost_mt19937 = distribution_peer<boost_binomial, boost::random::mt19937>;
+using std_mt19937 = distribution_peer<std::binomial_distribution<std::int64_t>, std::mt19937>;
 
 struct free_generator {
     void operator()(gsl_rng* generator) const { gsl_rng_free(generator); }

@@ -2,7 +2,7 @@
 // the headers state, and packs against scalars bit for bit. Also compiled with MICA_VECTOR_EXTENSIONS=0.
 //
 // The binary32 functions are swept over every 257th value of their domain and its special ones, or, where
-// MICA_SWEEP_STRIDE is 1, over all of them: the target numeric_sweep does that, and prints the largest errors.
+// MICA_SWEEP_STRIDE is 1, over all of them: the target full_sweep does that, and prints the largest errors.
 #include <array>
 #include <bit>
 #include <cmath>

@@ -44,4 +44,12 @@ worst_case deviation_of(float n, float probability) {
     return {found.total_variation, std::abs(found.mean - 1), std::abs(found.variance - 1)};
 }
 
+/// The worst of a law over the grid.
+template <class Law>
+worst_case worst_of(double factor = 1.25) {
+    worst_case worst;
+    each([&](float n, float p) { worst.see(deviation_of<Law>(n, p)); }, factor);
+    return worst;
+}
+
 } // namespace stated_grid

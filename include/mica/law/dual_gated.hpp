@@ -10,7 +10,7 @@
 // Draws: two uniforms, the gate first, then the Gaussian.
 // Output: real counts. successes + failures = N for N >= 2 (to one rounding); below, N is dithered to a neighbouring
 //   integer, so the sum is N in expectation only. Where no branch is taken (N < 1) the outcome is (0,0).
-// Error (tests/law_test.cpp): the mean is up to 32 % too large and the variance 48 %,
+// Error (tests/dual_gated_test.cpp): the mean is up to 32 % too large and the variance 48 %,
 //   at N p between 0.1 and 10; total variation to the binomial up to 0.23.
 // Departures: line 6 of the algorithm, as printed, subtracts c from 1 where c p is meant (compare Eq. 25). Which gate
 //   is used is a policy; the order on xi is the paper's (successes at small xi), but "at least one success" is

@@ -17,9 +17,9 @@
 // continue the third in powers of y as a geometric series nearly does, and diverge where y is large, just beyond the
 // gates; so the series is summed as a quotient. Matching it order by order would give (2/15)(2+w)/(1+2w), about 0.267,
 // for 0.225, and 1.42 + 0.71 w for 1.46; the constants above are fitted to the binomial for 4 to 8 gates at once
-// (tools/fit_quantile) and rounded, and serve any number of gates. Below a variance of 1/20, where hardly anything passes the
-// gates, s^2 is 1/20; z is limited to [-2s, (2.5 + 5.5 d) s], within which f increases. For p > 1/2 the failures are
-// evaluated at 1 - xi.
+// (tools/fit_quantile) and rounded, and serve any number of gates. Below a variance of 1/20, where hardly anything
+// passes the gates, s^2 is 1/20; z is limited to [-2s, (2.5 + 5.5 d) s], within which f increases. For p > 1/2 the
+// failures are evaluated at 1 - xi.
 //
 // Source: mica's own (Cornish & Fisher 1938 for the expansion).
 // Draws: two uniforms, the quantile first, then the rounding of real N: trials = floor(N) + (xi' < N - floor(N)).

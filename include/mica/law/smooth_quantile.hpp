@@ -26,7 +26,7 @@
 // Output: real counts; successes + failures = N exactly for N >= 1, in expectation below. Continuous in xi, N and p.
 // Error, with 4 gates and N p up to 300: relative mean error 4e-4 for real N, 1.5e-4 at integers N >= 8. Variance at
 //   integer N >= 1 up to 8.4 % too small, where N p is small; up to 22 % between 1 and 2, 12 % beyond 3
-//   (tests/quantile_test.cpp). Relative mean error with 1, 2, 5, 8 gates: 8e-2, 5e-3, 3e-4, 1.2e-4.
+//   (tests/smooth_quantile_test.cpp). Relative mean error with 1, 2, 5, 8 gates: 8e-2, 5e-3, 3e-4, 1.2e-4.
 // Numerics: S_k comes by subtraction, so a ramp is misplaced by up to 6e-8 N p in xi. Where xi or 1 - xi is below 1e-3
 //   the count can therefore step by more than 1e-3 from one float N or p to the next.
 #pragma once

@@ -49,7 +49,7 @@ struct log1p_gate {
 /// The gate as KK25 Eq. 25 has it: (1 - c p)^(N/c), c = max(1, 10^-3.54 / p).
 ///
 /// The published remedy for binary32. Largest absolute error of none in float 8.5e-5, near p = 2e-12, N = 5e11: it
-/// evaluates another number than (1-p)^N (tests/gate_test.cpp). any has the relative error 2e-4.
+/// evaluates another number than (1-p)^N (tests/numeric_test.cpp). any has the relative error 2e-4.
 struct scaled_gate {
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real none(Real trials, Real probability) {

@@ -123,24 +123,32 @@ MICA_HOST_DEVICE constexpr Number abs(Number x) {
     return select(x < Number(0), -x, x);
 }
 
+namespace detail {
+
+/// From here on every number is an integer.
+template <std::floating_point Scalar>
+inline constexpr Scalar integers_from = Scalar(1) / std::numeric_limits<Scalar>::epsilon();
+
+/// x without its fraction where it has one, which must be below integers_from.
+template <real_number Number>
+MICA_HOST_DEVICE constexpr Number without_fraction(Number x, const mask_of<Number>& has_fraction) {
+    return select(has_fraction, convert<Number>(convert<integer_of<Number>>(select(has_fraction, x, Number(0)))), x);
+}
+
+} // namespace detail
+
 /// The largest integer <= x, for every finite x. Through the integers, not by adding and subtracting a large number,
 /// which -ffast-math deletes.
 template <real_number Number>
 MICA_HOST_DEVICE constexpr Number floor(Number x) {
-    using Scalar = scalar_of<Number>;
-    constexpr Scalar all_integers_beyond = Scalar(1) / std::numeric_limits<Scalar>::epsilon();
-    const auto has_fraction = abs(x) < Number(all_integers_beyond);
-    const Number truncated = convert<Number>(convert<integer_of<Number>>(select(has_fraction, x, Number(0))));
-    return select(has_fraction, truncated - select(truncated > x, Number(1), Number(0)), x);
+    const Number truncated = detail::without_fraction(x, abs(x) < Number(detail::integers_from<scalar_of<Number>>));
+    return truncated - select(truncated > x, Number(1), Number(0));
 }
 
 /// The integer part of x >= 0.
 template <real_number Number>
 MICA_HOST_DEVICE constexpr Number truncate(Number x) {
-    using Scalar = scalar_of<Number>;
-    constexpr Scalar all_integers_beyond = Scalar(1) / std::numeric_limits<Scalar>::epsilon();
-    const auto has_fraction = x < Number(all_integers_beyond);
-    return select(has_fraction, convert<Number>(convert<integer_of<Number>>(select(has_fraction, x, Number(0)))), x);
+    return detail::without_fraction(x, x < Number(detail::integers_from<scalar_of<Number>>));
 }
 
 /// Whether x is NaN, read off its bits because -ffast-math deletes x != x.
