@@ -80,6 +80,15 @@ void register_multinomial(const std::string& name, Law) {
     measure("multinomial_" + std::to_string(K) + "/" + name, streams::size, [shared] {
         mica::sample(mica::multinomial<K, Law>{}, shared->stream.trials, shared->from, 1U, shared->to);
     });
+    measure("multinomial_scalar_" + std::to_string(K) + "/" + name, streams::size, [shared] {
+        for (std::size_t i = 0; i < streams::size; ++i) {
+            std::array<float, K> probabilities;
+            for (std::size_t k = 0; k < K; ++k) probabilities[k] = shared->from[k][i];
+            uniform_stream<float> xi{1U, static_cast<std::uint32_t>(i)};
+            const auto drawn = mica::multinomial<K, Law>{}(shared->stream.trials[i], probabilities, xi);
+            for (std::size_t k = 0; k < K; ++k) shared->to[k][i] = drawn[k];
+        }
+    });
 }
 
 template <class Law>

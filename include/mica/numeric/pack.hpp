@@ -152,7 +152,10 @@ struct pack {
 
 #if MICA_VECTOR_EXTENSIONS
 #define MICA_PACK_OPERATOR(op)                                                                                         \
-    friend pack operator op(pack a, pack b) { return pack(a.v op b.v); }
+    MICA_WIDE friend pack operator op(pack a, pack b) {                                                                \
+        MICA_CONTRACT                                                                                                  \
+        return pack(a.v op b.v);                                                                                       \
+    }
 #define MICA_PACK_COMPARISON(op)                                                                                       \
     friend mask operator op(pack a, pack b) { return {a.v op b.v}; }
 #define MICA_PACK_SHIFT(op)                                                                                            \
@@ -237,6 +240,19 @@ MICA_PACK_MINMAX(double, 4, __builtin_ia32_minpd256, __builtin_ia32_maxpd256)
 #endif
 #if defined(__AVX2__)
 MICA_PACK_MINMAX(std::int32_t, 8, __builtin_ia32_pminsd256, __builtin_ia32_pmaxsd256)
+#endif
+#if defined(__AVX512F__)
+// All lanes, rounding as set (4).
+#define MICA_SMALLER_512(a, b) __builtin_ia32_minps512_mask(a, b, a, static_cast<short>(-1), 4)
+#define MICA_LARGER_512(a, b) __builtin_ia32_maxps512_mask(a, b, a, static_cast<short>(-1), 4)
+MICA_PACK_MINMAX(float, 16, MICA_SMALLER_512, MICA_LARGER_512)
+#undef MICA_SMALLER_512
+#undef MICA_LARGER_512
+#define MICA_SMALLER_512(a, b) __builtin_ia32_minpd512_mask(a, b, a, static_cast<signed char>(-1), 4)
+#define MICA_LARGER_512(a, b) __builtin_ia32_maxpd512_mask(a, b, a, static_cast<signed char>(-1), 4)
+MICA_PACK_MINMAX(double, 8, MICA_SMALLER_512, MICA_LARGER_512)
+#undef MICA_SMALLER_512
+#undef MICA_LARGER_512
 #endif
 #undef MICA_PACK_MINMAX
 #endif
