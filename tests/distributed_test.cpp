@@ -1,5 +1,6 @@
-// Counts on a surface: they have the mean of the law, the variance that interpolation leaves of it (the published
-// defect, shown here so that nobody takes it for a virtue), and they stay where they are.
+// Counts on a surface. Interpolated, they have the mean of the law and the variance that interpolation leaves of it (the
+// published defect, shown here so that nobody takes it for a virtue); of blended variates they have the law. Either way
+// they stay where they are.
 
 #include <array>
 #include <cmath>
@@ -18,13 +19,18 @@
 
 namespace {
 
-using mica::distributed_binomial;
-using mica::distributed_multinomial;
+using mica::blended_variates;
 using mica::exact_binomial;
 using mica::grid_vertices;
+using mica::interpolated_counts;
 using mica::uv_derivatives;
 using mica::uv_point;
 using vertices = grid_vertices<float>;
+
+template <class Law, class Interpolation = interpolated_counts>
+using distributed_binomial = mica::distributed_binomial<Law, Interpolation>;
+template <std::size_t K, class Law, class Interpolation = interpolated_counts>
+using distributed_multinomial = mica::distributed_multinomial<K, Law, Interpolation>;
 
 constexpr double epsilon = std::numeric_limits<float>::epsilon();
 
@@ -55,6 +61,13 @@ vertices vertices_at(const place& where, float trials, std::uint32_t seed) {
     return mica::make_grid_vertices(mica::make_footprint(where.derivatives), where.uv, trials, seed);
 }
 
+/// All twelve, grid by grid.
+std::array<mica::grid_vertex<float>, 12> all_vertices(const vertices& pixel) {
+    std::array<mica::grid_vertex<float>, 12> result{};
+    for (std::size_t i = 0; i < 12; ++i) result[i] = pixel.grids[i / 3].vertices[i % 3];
+    return result;
+}
+
 void expect_mean(const statistics::running_moments& sample, double truth) {
     EXPECT_LE(std::abs(sample.mean() - truth), 4.5 * sample.standard_error() + 1e-12)
         << "mean " << sample.mean() << " standard error " << sample.standard_error() << " truth " << truth;
@@ -63,7 +76,7 @@ void expect_mean(const statistics::running_moments& sample, double truth) {
 TEST(GridVertices, TrialsAndWeightsAreShared) {
     random_places random(1);
     for (int i = 0; i < 20000; ++i) {
-        const auto pixel = vertices_at(random(), 1000, 5);
+        const auto pixel = all_vertices(vertices_at(random(), 1000, 5));
         double trials = 0;
         for (std::size_t grid = 0; grid < 4; ++grid) {
             double weights = 0;
@@ -85,7 +98,7 @@ TEST(GridVertices, TrialsFollowTheSharesOfTheGrids) {
     random_places random(11);
     for (int i = 0; i < 1000; ++i) {
         const auto where = random();
-        const auto pixel = vertices_at(where, 1000, 5);
+        const auto pixel = all_vertices(vertices_at(where, 1000, 5));
         const auto grids = mica::enclosing_tetrahedron(mica::make_footprint(where.derivatives), 1.5F);
         for (std::size_t grid = 0; grid < 4; ++grid) ASSERT_FLOAT_EQ(pixel[3 * grid].trials, 1000 * grids[grid].share);
     }
@@ -95,7 +108,8 @@ TEST(GridVertices, FollowSeedAndPlaceOnly) {
     random_places random(2);
     for (int i = 0; i < 1000; ++i) {
         const auto where = random();
-        const auto one = vertices_at(where, 50, 7), same = vertices_at(where, 50, 7), other = vertices_at(where, 50, 8);
+        const auto one = all_vertices(vertices_at(where, 50, 7)), same = all_vertices(vertices_at(where, 50, 7)),
+                   other = all_vertices(vertices_at(where, 50, 8));
         for (std::size_t v = 0; v < one.size(); ++v) {
             ASSERT_EQ(one[v].seed, same[v].seed);
             ASSERT_EQ(one[v].weight, same[v].weight);
@@ -136,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(TrialsAndProbability, DistributedMean,
 
 double sum_of_squared_weights(const vertices& pixel) {
     double sum = 0, trials = 0;
-    for (const auto& vertex : pixel) {
+    for (const auto& vertex : all_vertices(pixel)) {
         sum += static_cast<double>(vertex.trials * vertex.weight * vertex.weight);
         trials += static_cast<double>(vertex.trials * vertex.weight);
     }
@@ -152,7 +166,7 @@ double exact_variance(double trials, double p) {
 /// The 12 outcomes are independent, so their variances add with the squared weights.
 double interpolated_variance(const vertices& pixel, double p) {
     double sum = 0;
-    for (const auto& vertex : pixel)
+    for (const auto& vertex : all_vertices(pixel))
         sum +=
             static_cast<double>(vertex.weight * vertex.weight) * exact_variance(static_cast<double>(vertex.trials), p);
     return sum;

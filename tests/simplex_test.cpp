@@ -238,7 +238,7 @@ void expect_no_more_collisions_than_random(const std::vector<std::uint32_t>& see
 TEST(Seeds, OfCellsAreDistinct) {
     std::vector<std::uint32_t> seeds;
     for (int j = -512; j < 512; ++j)
-        for (int i = -512; i < 512; ++i) seeds.push_back(mica::cell_seed(7, i, j));
+        for (int i = -512; i < 512; ++i) seeds.push_back(mica::cell_seed(7U, i, j));
     expect_no_more_collisions_than_random(seeds);
 }
 

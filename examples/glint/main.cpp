@@ -42,9 +42,11 @@ int run(int argc, char** argv) {
         ->capture_default_str();
     render_command->add_option("--levels", render.levels, "brightness levels K of the environment")
         ->capture_default_str();
-    render_command->add_option("--law", render.law, "binomial law: quantile, dual_gated or exact")
+    render_command->add_option("--law", render.law, std::string("binomial law: ") + glint::known_laws)
         ->capture_default_str();
-    render_command->add_option("--interpolate", render.interpolate, "what a pixel blends: counts")
+    render_command->add_option("--interpolate", render.interpolate, "what a pixel blends: variates or counts")
+        ->capture_default_str();
+    render_command->add_option("--softness", render.softness, "of glints' edges, in [0, 1); for variates")
         ->capture_default_str();
     render_command->add_option("--seed", render.seed, "which realisation")->capture_default_str();
     render_command->add_option("-o,--output", render.output, "PNG to write")->capture_default_str();
@@ -61,7 +63,7 @@ int run(int argc, char** argv) {
     glint::furnace_options furnace;
     CLI::App* const furnace_command =
         app.add_subcommand("furnace", "white furnace: the mean of glint / smooth over many realisations");
-    furnace_command->add_option("--law", furnace.law, "binomial law: quantile, dual_gated or exact")
+    furnace_command->add_option("--law", furnace.law, std::string("binomial law: ") + glint::known_laws)
         ->capture_default_str();
     furnace_command->add_option("--levels", furnace.levels, "levels K, one or more")->delimiter(',');
     furnace_command->add_option("--roughness", furnace.roughness, "GGX alphas")->delimiter(',');

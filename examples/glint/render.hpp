@@ -51,10 +51,10 @@ struct frame {
 /// Where no surface is.
 inline constexpr mica::rgb<float> background{0, 0, 0};
 
-template <class Law, std::size_t K>
+template <class Law, class Interpolation = mica::blended_variates, std::size_t K>
 frame render_frame(const scene& seen, std::size_t width, std::size_t height, const mica::glint_material& material,
                    const mica::prefiltered_environment<K>& environment, const mica::microfacet_table& table,
-                   std::uint32_t seed) {
+                   std::uint32_t seed, Interpolation interpolation = {}) {
     const stopwatch watch;
     const std::vector<mica::rgb<float>> empty(width * height, background);
     frame result{{width, height, empty}, {width, height, empty}};
@@ -64,7 +64,7 @@ frame render_frame(const scene& seen, std::size_t width, std::size_t height, con
             const auto point = seen.surface(x, y);
             if (!point) continue;
             const std::size_t i = y * width + x;
-            const auto radiance = mica::shade<Law>(*point, material, environment, table, seed);
+            const auto radiance = mica::shade<Law>(*point, material, environment, table, seed, interpolation);
             result.glint.pixels[i] = radiance.glint;
             result.smooth.pixels[i] = radiance.smooth;
             shows_surface[i] = 1;
@@ -104,7 +104,8 @@ struct render_options {
     double log_density = 13;
     int levels = 4;
     std::string law = "quantile";
-    std::string interpolate = "counts";
+    std::string interpolate = "variates";
+    double softness = 0;
     std::uint32_t seed = 1;
     std::string output = "glint.png";
     bool json = false;

@@ -3,6 +3,7 @@
 
 #include "config.hpp"
 
+#include "numeric/angle.hpp"
 #include "numeric/elementary.hpp"
 #include "numeric/gate.hpp"
 #include "numeric/normal.hpp"
@@ -11,6 +12,7 @@
 
 #include "random/generator_uniforms.hpp"
 #include "random/hash.hpp"
+#include "random/normal_pair.hpp"
 #include "random/uniform.hpp"
 #include "random/uniform_stream.hpp"
 
@@ -29,9 +31,13 @@
 #include "law/quantile.hpp"
 #include "law/rarer_side.hpp"
 #include "law/smooth_quantile.hpp"
+#include "law/softened_quantile.hpp"
 
+#include "grid/angular.hpp"
+#include "grid/blended_uniforms.hpp"
 #include "grid/distributed.hpp"
 #include "grid/footprint.hpp"
+#include "grid/grid_vertices.hpp"
 #include "grid/simplex.hpp"
 #include "grid/tetrahedron.hpp"
 

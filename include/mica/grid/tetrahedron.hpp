@@ -23,22 +23,20 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 
-#include "../numeric/elementary.hpp"
 #include "footprint.hpp"
 
 namespace mica {
 
 /// One grid of the lattice, and its part in a pixel.
-template <scalar_number Real>
+template <real_number Real>
 struct tetrahedron_vertex {
-    int level;       ///< l: cells are 2^l wide, in uv
-    int log2_ratio;  ///< cells are 2^log2_ratio times as long as wide
-    int orientation; ///< index of the orientation of the long side, 0 .. orientations(log2_ratio) - 1
-    Real weight;     ///< barycentric weight, >= 0; the four sum to 1
-    Real share;      ///< part of the pixel's trials, w a / sum w a with the cell areas a; the four sum to 1
+    integer_of<Real> level;       ///< l: cells are 2^l wide, in uv
+    integer_of<Real> log2_ratio;  ///< cells are 2^log2_ratio times as long as wide
+    integer_of<Real> orientation; ///< index of that of the long side, 0 .. orientations(log2_ratio) - 1
+    Real weight;                  ///< barycentric weight, >= 0; the four sum to 1
+    Real share;                   ///< part of the pixel's trials, w a / sum w a with cell areas a; the four sum to 1
 };
 
 /// Orientations per half turn of the grids of a ratio.
@@ -51,83 +49,112 @@ inline constexpr int largest_level = 40;
 namespace detail {
 
 /// A vertex of the lattice's base: a grid without its level.
+template <real_number Real>
 struct ring_vertex {
-    int log2_ratio;
-    int orientation;
+    integer_of<Real> log2_ratio;
+    integer_of<Real> orientation;
 };
 
-template <scalar_number Real>
+template <real_number Real>
+MICA_HOST_DEVICE constexpr ring_vertex<Real> select_vertex(const mask_of<Real>& mask, const ring_vertex<Real>& if_true,
+                                                           const ring_vertex<Real>& if_false) {
+    return {select(mask, if_true.log2_ratio, if_false.log2_ratio),
+            select(mask, if_true.orientation, if_false.orientation)};
+}
+
+template <real_number Real>
 struct prism {
-    ring_vertex vertex[3]; ///< in the order in which they move to the next level
-    Real weight[3];        ///< barycentric in the triangle
+    ring_vertex<Real> vertex[3]; ///< in the order in which they move to the next level
+    Real weight[3];              ///< barycentric in the triangle
 };
 
 /// The triangle of the base that holds (ratio, orientation).
-template <scalar_number Real>
-MICA_HOST_DEVICE prism<Real> enclosing_prism(Real ratio, Real orientation) {
-    const int ring = std::ilogb(ratio);
-    const Real lower_ratio = std::scalbn(Real(1), ring);
-    const Real rho = clamp((ratio - lower_ratio) / lower_ratio, Real(0), Real(1));
+template <real_number Real>
+MICA_HOST_DEVICE constexpr prism<Real> enclosing_prism(Real ratio, Real orientation) {
+    using Integer = integer_of<Real>;
+    using Vertex = ring_vertex<Real>;
+    const Integer ring = binary_exponent(ratio), next_ring = ring + Integer(1);
+    const Real rho = clamp(ratio * power_of_two<Real>(-ring) - Real(1), Real(0), Real(1));
 
     // The lower ring's orientations; in the centre, where it has one, those of the upper ring.
-    const int count = orientations(ring == 0 ? 1 : ring);
-    const Real position = orientation * static_cast<Real>(count);
-    const int bin = minimum(static_cast<int>(position), count - 1);
-    const int next = (bin + 1) % count;
-    const Real t = clamp(position - static_cast<Real>(bin), Real(0), Real(1));
+    const auto centre = ring < Integer(1);
+    const Real count = power_of_two<Real>(select(centre, Integer(3), ring + Integer(2)));
+    const Real position = orientation * count;
+    const Real bin_number = minimum(truncate(position), count - Real(1));
+    const Integer bin = convert<Integer>(bin_number);
+    const Integer next = select(bin_number < count - Real(1), bin + Integer(1), Integer(0));
+    const Real t = clamp(position - bin_number, Real(0), Real(1));
 
-    if (ring == 0) {
-        const ring_vertex a{1, bin}, b{0, 0}, c{1, next};
-        return {{b, c, a}, {1 - rho, rho * t, rho * (1 - t)}};
-    }
-    const int upper_count = 2 * count;
-    const ring_vertex b{ring, bin}, d{ring, next};
-    const ring_vertex a{ring + 1, 2 * bin}, c{ring + 1, 2 * bin + 1}, e{ring + 1, (2 * bin + 2) % upper_count};
-    if (2 * t < rho) return {{b, c, a}, {1 - rho, 2 * t, rho - 2 * t}};
-    if (2 - 2 * t < rho) return {{d, e, c}, {1 - rho, rho - (2 - 2 * t), 2 - 2 * t}};
-    const Real d_weight = maximum(Real(0), t - rho / 2);
-    return {{d, b, c}, {d_weight, maximum(Real(0), 1 - rho - d_weight), rho}};
+    const Vertex b{ring, bin}, d{ring, next};
+    const Vertex a{next_ring, bin + bin}, c{next_ring, bin + bin + Integer(1)}, e{next_ring, next + next};
+    const Real low = Real(1) - rho;
+    const Real twice = t + t, rest = Real(2) - twice;
+    const auto left = twice < rho, right = rest < rho;
+    const Real d_weight = maximum(Real(0), t - Real(0.5) * rho);
+    const prism<Real> outer{{select_vertex<Real>(left, b, d),
+                             select_vertex<Real>(left, c, select_vertex<Real>(right, e, b)),
+                             select_vertex<Real>(left, a, c)},
+                            {select(left || right, low, d_weight),
+                             select(left, twice, select(right, rho - rest, maximum(Real(0), low - d_weight))),
+                             select(left, rho - twice, select(right, rest, rho))}};
+    const Vertex one{Integer(0), Integer(0)}, later{Integer(1), next}, earlier{Integer(1), bin};
+    return {{select_vertex<Real>(centre, one, outer.vertex[0]), select_vertex<Real>(centre, later, outer.vertex[1]),
+             select_vertex<Real>(centre, earlier, outer.vertex[2])},
+            {select(centre, low, outer.weight[0]), select(centre, rho * t, outer.weight[1]),
+             select(centre, rho * (Real(1) - t), outer.weight[2])}};
 }
 
 } // namespace detail
+
+/// The level of a footprint, log2(sigma_min S) with its fraction, before it is limited.
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real footprint_level(const footprint<Real>& pixel, Real scale) {
+    return mica::log2(pixel.sigma_min) + mica::log2(scale);
+}
 
 /// The four grids around a footprint.
 ///
 /// scale S > 0: how large a glint is drawn, in pixels (1 aliases, 1.5 is the published default); it moves the level
 /// only. A footprint of size 0 takes the smallest level.
-template <scalar_number Real>
-MICA_HOST_DEVICE std::array<tetrahedron_vertex<Real>, 4> enclosing_tetrahedron(const footprint<Real>& pixel,
-                                                                               Real scale) {
+template <real_number Real>
+MICA_HOST_DEVICE constexpr std::array<tetrahedron_vertex<Real>, 4> enclosing_tetrahedron(const footprint<Real>& pixel,
+                                                                                         Real scale) {
+    using Integer = integer_of<Real>;
     const detail::prism<Real> base = detail::enclosing_prism(pixel.ratio, pixel.orientation);
 
-    const Real lambda =
-        clamp(mica::log2(pixel.sigma_min) + mica::log2(scale), Real(smallest_level), Real(largest_level));
+    const Real lambda = clamp(footprint_level(pixel, scale), Real(smallest_level), Real(largest_level));
     const Real floor_lambda = mica::floor(lambda);
-    const int level = static_cast<int>(floor_lambda);
+    const Integer level = convert<Integer>(floor_lambda);
     const Real fraction = lambda - floor_lambda;
 
     // The prism's vertices have moved up when the fraction has passed their weights, one after the other: of the
     // four vertices of the tetrahedron three are ends of the moved or unmoved edges, and one edge has both ends.
-    const auto vertex = [&](int i, int up, Real weight) {
-        return tetrahedron_vertex<Real>{level + up, base.vertex[i].log2_ratio, base.vertex[i].orientation,
-                                        maximum(weight, Real(0)), 0};
-    };
     const Real first = base.weight[0], second = base.weight[1], third = base.weight[2];
-    std::array<tetrahedron_vertex<Real>, 4> result =
-        fraction <= first ? std::array{vertex(0, 0, first - fraction), vertex(0, 1, fraction), vertex(1, 0, second),
-                                       vertex(2, 0, third)}
-        : fraction <= first + second ? std::array{vertex(0, 1, first), vertex(1, 0, second - (fraction - first)),
-                                                  vertex(1, 1, fraction - first), vertex(2, 0, third)}
-                                     : std::array{vertex(0, 1, first), vertex(1, 1, second), vertex(2, 0, 1 - fraction),
-                                                  vertex(2, 1, fraction - (first + second))};
+    const auto none_moved = fraction <= first;
+    const auto one_moved = fraction <= first + second;
+    const auto vertex = [&](const mask_of<Real>& up, const detail::ring_vertex<Real>& at, Real weight) {
+        return tetrahedron_vertex<Real>{level + select(up, Integer(1), Integer(0)), at.log2_ratio, at.orientation,
+                                        maximum(weight, Real(0)), Real(0)};
+    };
+    using detail::select_vertex;
+    const Real past_first = fraction - first, past_second = fraction - (first + second);
+    std::array<tetrahedron_vertex<Real>, 4> result{
+        vertex(!none_moved, base.vertex[0], select(none_moved, first - fraction, first)),
+        vertex(none_moved || !one_moved, select_vertex<Real>(none_moved, base.vertex[0], base.vertex[1]),
+               select(none_moved, fraction, select(one_moved, second - past_first, second))),
+        vertex(!none_moved && one_moved, select_vertex<Real>(one_moved, base.vertex[1], base.vertex[2]),
+               select(none_moved, second, select(one_moved, past_first, Real(1) - fraction))),
+        vertex(!one_moved, base.vertex[2], select(one_moved, third, past_second))};
 
     // Cell areas r 4^l, in units of the smallest of them.
-    Real total = 0;
+    const Integer smallest_ratio = binary_exponent(pixel.ratio);
+    Real total = Real(0);
     for (auto& v : result) {
-        v.share = v.weight * std::scalbn(Real(1), v.log2_ratio - std::ilogb(pixel.ratio) + 2 * (v.level - level));
-        total += v.share;
+        const Integer up = v.level - level;
+        v.share = v.weight * power_of_two<Real>(v.log2_ratio - smallest_ratio + up + up);
+        total = total + v.share;
     }
-    for (auto& v : result) v.share /= total;
+    for (auto& v : result) v.share = v.share / total;
     return result;
 }
 

@@ -66,15 +66,6 @@ MICA_HOST_DEVICE constexpr void require_binomial_parameters(Real trials, Real pr
 }
 #endif
 
-/// x limited to [0, most], `most` > 0 and finite; NaN gives 0 or most. By its bits, whose order as integers is that of
-/// the numbers from 0 on: -ffast-math lets clang drop a comparison that only an infinity fails.
-template <real_number Real>
-MICA_HOST_DEVICE constexpr Real limited_from_0(Real x, scalar_of<Real> most) {
-    using Integer = integer_of<Real>;
-    const Integer most_bits = Integer(reinterpret<integer_of<scalar_of<Real>>>(most));
-    return reinterpret<Real>(minimum(maximum(reinterpret<Integer>(x), Integer(0)), most_bits));
-}
-
 /// The parameters brought into the domain, as stated above.
 template <real_number Real>
 MICA_HOST_DEVICE constexpr binomial_parameters<Real> in_domain(Real trials, Real probability) {

@@ -40,14 +40,25 @@ MICA_HOST_DEVICE constexpr decltype(auto) node_stream(Uniform& stream, std::uint
         return static_cast<Uniform&>(stream);
 }
 
+/// Successes and failures by a law, or what is expected of them where the source says that only part of its randomness is
+/// known.
+template <class Law, real_number Real, class Uniform>
+MICA_HOST_DEVICE constexpr counts<Real> drawn_counts(Real trials, Real probability, Uniform& xi) {
+    if constexpr (requires { xi.softness; })
+        return Law::softened(trials, probability, xi.normal(), xi.softness);
+    else
+        return Law{}(trials, probability, xi);
+}
+
 /// Trials of a node, an integer for laws of integer counts, and a probability of at most 1/2.
 template <class Law, real_number Real, class Uniform>
 MICA_HOST_DEVICE constexpr counts<Real> divided(Real trials, Real probability, Uniform& xi) {
-    if constexpr (requires { Law{}.rarer_successes(trials, probability, xi); }) {
+    if constexpr (
+        !requires { xi.softness; } && requires { Law{}.rarer_successes(trials, probability, xi); }) {
         const Real successes = Law{}.rarer_successes(trials, probability, xi);
         return {successes, trials - successes};
     } else {
-        return Law{}(trials, probability, xi);
+        return drawn_counts<Law>(trials, probability, xi);
     }
 }
 
@@ -68,13 +79,14 @@ MICA_FLATTEN MICA_HOST_DEVICE constexpr counts<Real> divide_trials(Real trials, 
 /// the probabilities.
 template <class Law, real_number Real, class Uniform>
 MICA_HOST_DEVICE constexpr Real categorised_trials(Real trials, Real total, Uniform& stream) {
-    if constexpr (Law::integer_counts) {
+    if constexpr (Law::integer_counts && !requires { stream.softness; }) {
         trials = dithered(trials, stream());
     }
     using Scalar = scalar_of<Real>;
     const auto complete = total >= Real(1 - 4 * std::numeric_limits<Scalar>::epsilon());
     if (all(complete)) return trials;
-    return select(complete, trials, Law{}(trials, minimum(total, Real(1)), node_stream(stream, 1U)).successes);
+    auto&& node = node_stream(stream, 1U);
+    return select(complete, trials, drawn_counts<Law>(trials, minimum(total, Real(1)), node).successes);
 }
 
 /// Nodes are numbered as in a heap: the root of the categories is 2, the children of m are 2m and 2m + 1.

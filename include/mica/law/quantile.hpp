@@ -44,6 +44,7 @@
 #include "../numeric/elementary.hpp"
 #include "binomial_law.hpp"
 #include "rarer_side.hpp"
+#include "softened_quantile.hpp"
 
 namespace mica {
 
@@ -93,6 +94,12 @@ struct quantile_binomial {
     MICA_HOST_DEVICE constexpr Real rarer_successes(Real trials, Real probability, Uniform&& xi) const {
         const Real u = xi();
         return count(trials, probability, detail::make_count_variate(u, u < Real(0.5)));
+    }
+
+    /// The expected counts given part of the randomness: real, continuous, of the same mean (softened_quantile.hpp).
+    template <real_number Real>
+    MICA_HOST_DEVICE static constexpr counts<Real> softened(Real trials, Real probability, Real z, Real softness) {
+        return detail::softened_quantile<Gates>(trials, probability, z, softness);
     }
 
   private:

@@ -74,6 +74,37 @@ MICA_HOST_DEVICE constexpr Real smooth_expansion(Real m, Real p, Real z) {
     return minimum(m, m * p + s * x + (skewness + kurtosis));
 }
 
+/// N between the whole numbers of trials next to it, at least 1, and what the recursions of both start from.
+template <real_number Real>
+struct whole_trials {
+    Real whole;    ///< the lower one, floor N
+    Real part;     ///< N - floor N
+    Real exponent; ///< log P(X = 0) of floor N trials
+    Real odds;     ///< p / q
+};
+
+template <real_number Real>
+MICA_HOST_DEVICE constexpr whole_trials<Real> make_whole_trials(Real n, Real p) {
+    // The recursion multiplies q^N by up to (N p/q)^Gates, so q^N has to underflow to zero.
+    const Real whole = maximum(truncate(n), Real(1));
+    return {whole, clamp(n - whole, Real(0), Real(1)), whole * log_complement(p), p / (Real(1) - p)};
+}
+
+/// What is added to S_(G-1) of floor N and of floor N + 1 trials, so that the tail beyond the gates has its sum: see above.
+template <int Gates, real_number Real>
+MICA_HOST_DEVICE constexpr pair_of<Real> last_gate(Real n, Real whole, Real part, Real p, Real mass, Real following,
+                                                   Real following_next) {
+    using Scalar = scalar_of<Real>;
+    constexpr Scalar gates = Gates;
+    const Real scarce = maximum(Real(0), (Real(gates + Scalar(0.25)) - n * p) * Real(1 / (Scalar(0.7) * (gates + 1))));
+    const Real square = scarce * scarce;
+    const Real twelfth = (Real(1) - square * square) * Real(Scalar(1) / 12);
+    const Real curvature = Real(0.5) * part * (Real(1) - part) * p * p;
+    const Real bend = select(n > Real(gates + 1), curvature * mass, Real(0));
+    return {bend - select(whole > Real(gates), twelfth * following, Real(0)),
+            bend - select(whole >= Real(gates), twelfth * following_next, Real(0))};
+}
+
 /// N <= 1: the rarer outcome, nothing, the other, with probabilities N p, 1 - N, N q.
 template <real_number Real>
 MICA_HOST_DEVICE constexpr pair_of<Real> lone_facet(Real n, const rarer_side<Real>& side) {
@@ -101,12 +132,7 @@ struct smooth_quantile_binomial {
         const auto side = detail::make_rarer_side(success_probability, xi());
         const Real p = side.probability;
         const Real q = Real(1) - p;
-        const Real whole = maximum(truncate(n), Real(1));
-        const Real part = clamp(n - whole, Real(0), Real(1));
-
-        // The recursion multiplies q^N by up to (N p/q)^Gates, so q^N has to underflow to zero.
-        const Real exponent = whole * log_complement(p);
-        const Real odds = p / q;
+        const auto [whole, part, exponent, odds] = detail::make_whole_trials(n, p);
         Real mass = mica::exp(exponent);                                  // pmf_k of `whole` trials
         Real mass_next = q * mass;                                        // and of one more
         Real above = detail::any_less_tail(side.variate, exponent, mass); // S_k - xi
@@ -121,14 +147,9 @@ struct smooth_quantile_binomial {
             Real centre = above;
             Real centre_next = above + p * mass;
             if (gate == Gates - 1) {
-                const Real scarce =
-                    maximum(Real(0), (Real(gates + Scalar(0.25)) - n * p) * Real(1 / (Scalar(0.7) * (gates + 1))));
-                const Real square = scarce * scarce;
-                const Real twelfth = (Real(1) - square * square) * Real(Scalar(1) / 12);
-                const Real curvature = Real(0.5) * part * (Real(1) - part) * p * p;
-                const Real bend = select(n > Real(gates + 1), curvature * mass, Real(0));
-                centre = centre + bend - select(whole > Real(gates), twelfth * following, Real(0));
-                centre_next = centre_next + bend - select(whole >= Real(gates), twelfth * following_next, Real(0));
+                const auto last = detail::last_gate<Gates>(n, whole, part, p, mass, following, following_next);
+                centre = centre + last.first;
+                centre_next = centre_next + last.second;
             }
             at_whole = at_whole + detail::ramp(centre * (steepness.first + steepness_following.first));
             at_next = at_next + detail::ramp(centre_next * (steepness.second + steepness_following.second));

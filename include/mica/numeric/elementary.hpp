@@ -52,7 +52,7 @@ struct format<float> {
     static constexpr float smallest_exponential = -87.33654F;
     static constexpr float largest_exponential = 88.3762F; // below 127.5 ln2, so that k <= 127
     static constexpr std::uint32_t inverse_sqrt_magic = 0x5f3759df;
-    static constexpr int inverse_sqrt_steps = 3; // relative error 1.8e-3, 4.7e-6, 3e-11
+    static constexpr int inverse_sqrt_steps = 3;
 };
 
 template <>
@@ -167,6 +167,23 @@ MICA_HOST_DEVICE constexpr reduced_exponent<Real> reduce_exponent(Real y) {
 
 } // namespace detail
 
+/// floor(log2 |x|) of a normal x. 0 and subnormal numbers give -127 (-1023), infinity and NaN 128 (1024), also under
+/// -ffast-math.
+template <real_number Real>
+MICA_HOST_DEVICE constexpr integer_of<Real> binary_exponent(Real x) {
+    using Format = detail::format<scalar_of<Real>>;
+    using Integer = integer_of<Real>;
+    return reinterpret<Integer>((reinterpret<bits_of<Real>>(x) << 1) >> (Format::mantissa_bits + 1)) -
+           Integer(Format::bias);
+}
+
+/// 2^k; k in [-126, 127] ([-1022, 1023]).
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real power_of_two(integer_of<Real> k) {
+    using Format = detail::format<scalar_of<Real>>;
+    return reinterpret<Real>((k + integer_of<Real>(Format::bias)) << Format::mantissa_bits);
+}
+
 /// Natural logarithm. x normal and > 0; 0 gives about -88 (-709), a finite stand-in for -infinity.
 template <real_number Real>
 MICA_HOST_DEVICE constexpr Real log(Real x) {
@@ -228,20 +245,29 @@ MICA_HOST_DEVICE constexpr Real expm1(Real y) {
     return select(small, rest, parts.power + parts.power * rest - Real(1));
 }
 
+namespace detail {
+
+/// 1 / sqrt(x) by so many Newton steps on an integer estimate: relative error 1.8e-3, 4.7e-6, 3e-11, ...
+template <int Steps, real_number Real>
+MICA_HOST_DEVICE constexpr Real inverse_sqrt_in(Real x) {
+    using Format = format<scalar_of<Real>>;
+    using Bits = bits_of<Real>;
+    const Real half = x * Real(0.5);
+    Real inverse = reinterpret<Real>(Bits(Format::inverse_sqrt_magic) - (reinterpret<Bits>(x) >> 1));
+    MICA_UNROLL
+    for (int step = 0; step < Steps; ++step) inverse = inverse * (Real(1.5) - half * inverse * inverse);
+    return inverse;
+}
+
+} // namespace detail
+
 /// 1 / sqrt(x) for finite normal x > 0.
 ///
 /// Newton steps on an integer estimate, in the scalar path too: the hardware's estimates differ between vendors, and its
 /// exact square root is not reachable from a pack without compiler flags.
 template <real_number Real>
 MICA_HOST_DEVICE constexpr Real inverse_sqrt(Real x) {
-    using Format = detail::format<scalar_of<Real>>;
-    using Bits = bits_of<Real>;
-    const Real half = x * Real(0.5);
-    Real inverse = reinterpret<Real>(Bits(Format::inverse_sqrt_magic) - (reinterpret<Bits>(x) >> 1));
-    MICA_UNROLL
-    for (int step = 0; step < Format::inverse_sqrt_steps; ++step)
-        inverse = inverse * (Real(1.5) - half * inverse * inverse);
-    return inverse;
+    return detail::inverse_sqrt_in<detail::format<scalar_of<Real>>::inverse_sqrt_steps>(x);
 }
 
 /// Square root of a finite x; 0 where x <= 0 or subnormal.

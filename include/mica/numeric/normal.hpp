@@ -1,6 +1,9 @@
-// mica/numeric/normal.hpp: the quantile of the standard normal distribution.
+// mica/numeric/normal.hpp: the standard normal distribution and its quantile.
 #pragma once
 
+#include <cmath>
+
+#include "angle.hpp"
 #include "elementary.hpp"
 
 namespace mica {
@@ -80,6 +83,36 @@ MICA_HOST_DEVICE constexpr Real normal_quantile(Real u) {
     const auto lower = u < Real(0.5);
     const Real size = detail::quantile_size(select(lower, u, Real(1) - u));
     return select(lower, -size, size);
+}
+
+namespace detail {
+
+/// P(Z > z) for z >= 0: t exp(-z^2 / 2) P(t - 1/2), t = 1 / (1 + 0.3 z), P of degree 7 with the relative error 1.1e-7 up
+/// to z = 13, where it stops.
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real normal_tail(Real z) {
+    using Scalar = scalar_of<Real>;
+    if constexpr (sizeof(Scalar) == 4) {
+        constexpr float c[] = {0.2219705912F, 0.329158689F,    0.3462044562F,   0.2221081766F,
+                               0.0288124454F, -0.07799354633F, -0.03269630678F, 0.03619484599F};
+        const Real x = minimum(z, Real(13));
+        const Real t = Real(1) / (Real(1) + Real(0.3F) * x);
+        return t * mica::exp(Real(-0.5) * x * x) * polynomial(t - Real(0.5), c);
+    } else {
+        return each_lane([](Scalar x) { return std::erfc(x * Scalar(0.70710678118654752440)) / 2; }, z);
+    }
+}
+
+} // namespace detail
+
+/// P(Z <= z), Z standard normal.
+///
+/// Relative error 5e-6 for z <= 0 down to -13, where it stops at 6e-39 (double 1e-14, no limit before -37); for z > 0
+/// absolute error 3e-7 (2e-16) (tests/numeric_test.cpp).
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real normal_cdf(Real z) {
+    const Real tail = detail::normal_tail(abs(z));
+    return select(z < Real(0), tail, Real(1) - tail);
 }
 
 } // namespace mica

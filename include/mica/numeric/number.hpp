@@ -145,6 +145,26 @@ MICA_HOST_DEVICE constexpr Number floor(Number x) {
     return truncated - select(truncated > x, Number(1), Number(0));
 }
 
+namespace detail {
+
+/// A number that an integer of its size can hold, as the integer below it and the rest in [0, 1).
+template <real_number Number>
+struct whole_and_rest {
+    integer_of<Number> whole;
+    Number rest;
+};
+
+template <real_number Number>
+MICA_HOST_DEVICE constexpr whole_and_rest<Number> split_at_integer(Number x) {
+    using Integer = integer_of<Number>;
+    const Integer truncated = convert<Integer>(x);
+    const Number rest = x - convert<Number>(truncated);
+    const auto below = rest < Number(0);
+    return {truncated - select(below, Integer(1), Integer(0)), rest + select(below, Number(1), Number(0))};
+}
+
+} // namespace detail
+
 /// The integer part of x >= 0.
 template <real_number Number>
 MICA_HOST_DEVICE constexpr Number truncate(Number x) {
@@ -160,5 +180,18 @@ MICA_HOST_DEVICE constexpr mask_of<Number> is_nan(Number x) {
     constexpr auto all_but_sign = std::numeric_limits<decltype(infinity_bits)>::max() >> 1;
     return (reinterpret<Bits>(x) & Bits(all_but_sign)) > Bits(infinity_bits);
 }
+
+namespace detail {
+
+/// x limited to [0, most], `most` > 0 and finite; NaN gives 0 or most. By its bits, whose order as integers is that of
+/// the numbers from 0 on: -ffast-math lets clang drop a comparison that only an infinity fails.
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real limited_from_0(Real x, scalar_of<Real> most) {
+    using Integer = integer_of<Real>;
+    const Integer most_bits = Integer(reinterpret<integer_of<scalar_of<Real>>>(most));
+    return reinterpret<Real>(minimum(maximum(reinterpret<Integer>(x), Integer(0)), most_bits));
+}
+
+} // namespace detail
 
 } // namespace mica

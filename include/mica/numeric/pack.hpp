@@ -70,6 +70,7 @@ struct pack_mask {
     using vector = typename detail::vector_of<element, W>::type;
     vector v;
 
+    pack_mask() = default;
     MICA_HOST_DEVICE constexpr pack_mask(const vector& lanes) : v(lanes) {}
     MICA_HOST_DEVICE constexpr pack_mask(const pack_mask& other) : v(other.v) {}
     MICA_HOST_DEVICE constexpr pack_mask& operator=(const pack_mask& other) {

@@ -5,7 +5,7 @@
 // Source: KK25 Sec. 4 and 5, Eq. 15, 17, 21. L_o is the smooth image-based radiance (split sum) in the mirror
 // direction, w_k the prefiltered indicators of the levels L_k, N the facets in the pixel. What is missing to sum p = 1
 // are facets that reflect nothing. They and level 1, whose radiance is 0 as published, are what the multinomial of the
-// other K - 1 levels leaves over, so K levels cost K - 1 binomials per vertex.
+// other K - 1 levels leaves over, so K levels cost K - 1 binomials.
 #pragma once
 
 #include <array>
@@ -18,23 +18,31 @@ namespace mica {
 
 /// Glint radiance over smooth radiance in one pixel, >= 0, with mean 1.
 ///
-/// levels: L_1 = 0 .. L_K. indicators: w_1 .. w_K of the pixel's lobe. visible_fraction: E_D / D_H.
-/// 1, the mean, where there is nothing to count: a degenerate footprint, black all around, or so few facets towards so
-/// little light that their expected flashes are below 1e-30.
-template <class Law, std::size_t K, scalar_number Real>
-MICA_HOST_DEVICE Real glint_ratio(const grid_vertices<Real>& vertices, Real trials, const std::array<Real, K>& levels,
-                                  const std::array<Real, K>& indicators, Real visible_fraction) {
-    std::array<Real, K - 1> probabilities{};
-    Real expected = 0; // of the radiance that one facet reflects, relative to the top level
+/// trials: the facets in the pixel. levels: L_1 = 0 .. L_K. indicators: w_1 .. w_K of the pixel's lobe. visible_fraction:
+/// E_D / D_H. 1, the mean, where there is nothing to count: a degenerate footprint, black all around, or so few facets
+/// towards so little light that their expected flashes are below 1e-30.
+template <class Law, class Interpolation = blended_variates, std::size_t K, class Vertices>
+MICA_HOST_DEVICE typename Vertices::number glint_ratio(const Vertices& vertices, typename Vertices::number trials,
+                                                       const std::array<typename Vertices::number, K>& levels,
+                                                       const std::array<typename Vertices::number, K>& indicators,
+                                                       typename Vertices::number visible_fraction,
+                                                       Interpolation interpolation = {}) {
+    using Real = typename Vertices::number;
+    const auto lit = levels[K - 1] > Real(0);
+    const Real brightest = select(lit, levels[K - 1], Real(1));
+    std::array<Real, K - 1> probabilities;
+    Real expected = Real(0); // of the radiance that one facet reflects, relative to the top level
     for (std::size_t k = 1; k < K; ++k) {
         probabilities[k - 1] = visible_fraction * indicators[k];
-        expected += levels[k] / levels[K - 1] * probabilities[k - 1];
+        expected = expected + levels[k] / brightest * probabilities[k - 1];
     }
-    if (!(levels[K - 1] > 0 && trials * expected >= Real(1e-30))) return 1;
-    const auto counts = distributed_multinomial<K - 1, Law>{}(vertices, probabilities);
-    Real reflected = 0;
-    for (std::size_t k = 1; k < K; ++k) reflected += levels[k] / levels[K - 1] * counts[k - 1];
-    return reflected / (trials * expected);
+    const Real expected_flashes = trials * expected;
+    const auto counted = lit && expected_flashes >= Real(1e-30F);
+    if (!any(counted)) return Real(1);
+    const auto counts = distributed_multinomial<K - 1, Law, Interpolation>{interpolation}(vertices, probabilities);
+    Real reflected = Real(0);
+    for (std::size_t k = 1; k < K; ++k) reflected = reflected + levels[k] / brightest * counts[k - 1];
+    return select(counted, reflected / select(counted, expected_flashes, Real(1)), Real(1));
 }
 
 /// A glittering surface.
@@ -58,9 +66,10 @@ struct glint_radiance {
 };
 
 /// The radiance of a pixel. `seed` picks the realisation.
-template <class Law, std::size_t K>
+template <class Law, class Interpolation = blended_variates, std::size_t K>
 glint_radiance shade(const shading_point& point, const glint_material& material,
-                     const prefiltered_environment<K>& environment, const microfacet_table& table, std::uint32_t seed) {
+                     const prefiltered_environment<K>& environment, const microfacet_table& table, std::uint32_t seed,
+                     Interpolation interpolation = {}) {
     const float n_dot_v = dot(point.normal, point.wo);
     if (!(n_dot_v > 0)) return {{0, 0, 0}, {0, 0, 0}};
     const auto lobe = environment(reflected(point.wo, point.normal), material.roughness);
@@ -72,7 +81,7 @@ glint_radiance shade(const shading_point& point, const glint_material& material,
     const float trials = minimum(std::exp(material.log_density) * pixel.area, 1e30F);
     const auto vertices = make_grid_vertices(pixel, point.uv, trials, seed, material.footprint_scale);
     const float ratio = glint_ratio<Law>(vertices, trials, environment.levels().radiance(), lobe.indicator,
-                                         table.visible_fraction(n_dot_v, material.roughness));
+                                         table.visible_fraction(n_dot_v, material.roughness), interpolation);
     return {ratio * smooth, smooth};
 }
 

@@ -1,0 +1,603 @@
+// Blended variates: every pixel has exactly the law, at one evaluation, and nothing jumps on the way from pixel to pixel.
+#include <array>
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <mica/grid/distributed.hpp>
+#include <mica/law/batch.hpp>
+#include <mica/law/exact.hpp>
+#include <mica/law/quantile.hpp>
+#include <mica/law/smooth_quantile.hpp>
+
+#include "binomial_fit.hpp"
+
+namespace {
+
+using mica::blended_uniforms;
+using mica::blended_variates;
+using mica::distributed_binomial;
+using mica::exact_binomial;
+using mica::half_vector_point;
+using mica::interpolated_counts;
+using mica::pack;
+using mica::uniform_stream;
+using mica::uv_derivatives;
+using mica::uv_point;
+
+constexpr float pi = 3.14159265F;
+
+/// Derivatives of a pixel whose footprint has the minor semi-axis 2^level / scale, so that it lies `level` levels up.
+struct shape {
+    float ratio;
+    float turn;  ///< of the major axis, in half turns
+    float level; ///< 0: on a level, 0.5: between two
+};
+
+template <class Real>
+uv_derivatives<Real> derivatives_of(Real ratio, Real turn, Real level, Real screen_turn = Real(0)) {
+    const Real width = mica::exp2(level - Real(10)) * Real(1 / mica::default_footprint_scale);
+    const auto [s, c] = mica::half_turns(turn);
+    const auto [a, b] = mica::half_turns(screen_turn);
+    const Real u1 = ratio * width * c, v1 = ratio * width * s, u2 = -width * s, v2 = width * c;
+    return {b * u1 + a * u2, b * v1 + a * v2, b * u2 - a * u1, b * v2 - a * v1};
+}
+
+const std::vector<shape> shapes{{1, 0, 0},      {1.3F, 0.1F, 0.5F}, {4, 0, 0.25F},    {5.7F, 0.37F, 0.5F},
+                                {16, 0.71F, 0}, {23, 0.2F, 0.6F},   {64, 0.5F, 0.1F}, {90, 0.83F, 0.5F}};
+
+/// Pixels of one shape at random places, each on a surface of its own.
+template <class Real>
+auto pixel_of(const shape& s, Real trials, mica::index_of<Real> index) {
+    uniform_stream<Real> place(mica::index_of<Real>(5U), index);
+    const Real u = place(), v = place();
+    const auto footprint = mica::make_footprint(derivatives_of(Real(s.ratio), Real(s.turn), Real(s.level)));
+    auto vertices = mica::make_grid_vertices(footprint, uv_point<Real>{u, v}, trials, 1U);
+    // A surface of its own for every lane: seeds apart by what the index says.
+    for (auto& grid : vertices.grids)
+        for (auto& vertex : grid.vertices) vertex.seed = vertex.seed ^ mica::mix(index);
+    return vertices;
+}
+
+template <class Real>
+auto pixel_with_half_vector(const shape& s, Real trials, mica::index_of<Real> index) {
+    uniform_stream<Real> place(mica::index_of<Real>(6U), index);
+    const Real u = place(), v = place(), x = Real(20) * place() - Real(10), y = Real(20) * place() - Real(10);
+    const auto footprint = mica::make_footprint(derivatives_of(Real(s.ratio), Real(s.turn), Real(s.level)));
+    auto vertices =
+        mica::make_grid_vertices(footprint, uv_point<Real>{u, v}, half_vector_point<Real>{x, y}, trials, 1U);
+    for (auto& grid : vertices.grids)
+        for (auto& vertex : grid.vertices)
+            for (auto& cell : vertex.cells) cell.seed = cell.seed ^ mica::mix(index);
+    return vertices;
+}
+
+constexpr int lanes = 8;
+using number = pack<float, lanes>;
+using index_pack = mica::index_of<number>;
+
+/// draw(first index of eight) for so many pixels, value by value.
+template <class Draw, class Use>
+void each_pixel(int pixels, const Draw& draw, const Use& use) {
+    for (int i = 0; i < pixels; i += lanes) {
+        const number drawn = draw(index_pack::iota(static_cast<std::uint32_t>(i)));
+        for (int k = 0; k < lanes; ++k) use(static_cast<double>(drawn[k]));
+    }
+}
+
+// --- normal variates ----------------------------------------------------------------------------------------------
+
+TEST(NormalPair, IsStandardNormal) {
+    constexpr int draws = 1 << 22, cells = 200;
+    for (const bool second : {false, true}) {
+        statistics::histogram observed(0, 1, cells, cells - 1);
+        statistics::running_moments moments;
+        each_pixel(
+            draws,
+            [&](index_pack i) {
+                const auto pair = mica::normal_pair_from_bits<number>(mica::hash(i));
+                return second ? pair.second : pair.first;
+            },
+            [&](double z) {
+                observed.add(std::floor(cells * statistics::normal_cdf(z)));
+                moments.add(z);
+            });
+        const std::vector<double> probabilities(cells, 1. / cells);
+        EXPECT_TRUE(statistics::passes(statistics::goodness_of_fit(probabilities, observed.observed()).p_value));
+        EXPECT_TRUE(statistics::passes(statistics::mean_p_value(moments, 0, 1)));
+        EXPECT_TRUE(statistics::passes(statistics::variance_p_value(moments, 1)));
+    }
+}
+
+// All of the 2^22 smallest radii: the far tail, whose angles are a golden-section sequence.
+TEST(NormalPair, HasTheWholeTail) {
+    constexpr double bits = 0x1p22, part = bits / 0x1p32;
+    double beyond[2] = {};
+    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(bits); ++i) {
+        const auto pair = mica::normal_pair_from_bits<float>(i);
+        beyond[0] += std::abs(pair.first) > 4.5F;
+        beyond[1] += std::abs(pair.second) > 4.5F;
+    }
+    // A radius this large has probability 2^-10, so all that goes beyond 4.5 is here.
+    const double expected = bits / part * std::erfc(4.5 / std::sqrt(2.));
+    for (const double count : beyond) EXPECT_LE(std::abs(count / expected - 1), 0.01) << count << ' ' << expected;
+}
+
+TEST(NormalPair, OfDoubleIsThatOfFloat) {
+    for (std::uint32_t i = 0; i < 100000; ++i) {
+        const auto bits = mica::hash(i);
+        const auto one = mica::normal_pair_from_bits<float>(bits);
+        const auto two = mica::normal_pair_from_bits<double>(bits);
+        ASSERT_NEAR(static_cast<double>(one.first), two.first, 2e-5 * (1 + std::abs(two.first)));
+        ASSERT_NEAR(static_cast<double>(one.second), two.second, 2e-5 * (1 + std::abs(two.second)));
+    }
+}
+
+// --- the law --------------------------------------------------------------------------------------------------------
+
+class EveryShape : public ::testing::TestWithParam<shape> {};
+
+TEST_P(EveryShape, UniformsAreUniform) {
+    constexpr int draws = 1 << 19, cells = 256;
+    const std::vector<double> probabilities(cells, 1. / cells);
+    for (const int skipped : {0, 1, 2}) {
+        statistics::histogram observed(0, 1, cells, cells - 1);
+        each_pixel(
+            draws,
+            [&](index_pack i) {
+                const auto vertices = pixel_of<number>(GetParam(), number(1), i);
+                blended_uniforms xi(vertices);
+                for (int k = 0; k < skipped; ++k) xi();
+                return xi();
+            },
+            [&](double u) { observed.add(std::floor(cells * u)); });
+        EXPECT_TRUE(statistics::passes(statistics::goodness_of_fit(probabilities, observed.observed()).p_value));
+    }
+}
+
+TEST_P(EveryShape, ExactBinomialStaysExact) {
+    for (const auto& c : {statistics::binomial_case{50, 0.02}, {1.5, 0.5}, {0.5, 0.2}, {400.25, 0.2}}) {
+        statistics::binomial_sample sample(c);
+        each_pixel(
+            1 << 19,
+            [&](index_pack i) {
+                const auto pixel = pixel_of<number>(GetParam(), number(static_cast<float>(c.trials)), i);
+                return distributed_binomial<exact_binomial>{}(pixel, static_cast<float>(c.probability));
+            },
+            [&](double count) { sample.add(count); });
+        EXPECT_TRUE(statistics::passes(sample.judge().p_value)) << c;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, EveryShape, ::testing::ValuesIn(shapes));
+
+TEST(Blended, ExactBinomialStaysExactWithHalfVectors) {
+    for (const auto& s : {shapes[1], shapes[5]}) {
+        const statistics::binomial_case c{30.5, 0.1};
+        statistics::binomial_sample sample(c);
+        each_pixel(
+            1 << 18,
+            [&](index_pack i) {
+                return distributed_binomial<exact_binomial>{}(pixel_with_half_vector<number>(s, number(30.5F), i),
+                                                              number(0.1F));
+            },
+            [&](double count) { sample.add(count); });
+        EXPECT_TRUE(statistics::passes(sample.judge().p_value));
+    }
+}
+
+// The joint law of four categories: means, variances and covariances of a multinomial.
+TEST(Blended, MultinomialsCovary) {
+    constexpr std::size_t K = 4;
+    const std::array<double, K> p{0.3, 0.05, 0.2, 0.1};
+    std::array<number, K> probabilities;
+    for (std::size_t k = 0; k < K; ++k) probabilities[k] = number(static_cast<float>(p[k]));
+    constexpr double trials = 40;
+    for (const auto& s : shapes) {
+        std::array<std::array<double, K>, K> products{};
+        std::array<double, K> sums{};
+        constexpr int pixels = 1 << 16;
+        for (int i = 0; i < pixels; i += lanes) {
+            const auto pixel = pixel_of<number>(s, number(40.F), index_pack::iota(static_cast<std::uint32_t>(i)));
+            const auto counts = mica::distributed_multinomial<K, exact_binomial>{}(pixel, probabilities);
+            for (int lane = 0; lane < lanes; ++lane)
+                for (std::size_t a = 0; a < K; ++a) {
+                    const double x = static_cast<double>(counts[a][lane]) - trials * p[a];
+                    sums[a] += x;
+                    for (std::size_t b = 0; b < K; ++b)
+                        products[a][b] += x * (static_cast<double>(counts[b][lane]) - trials * p[b]);
+                }
+        }
+        for (std::size_t a = 0; a < K; ++a)
+            for (std::size_t b = 0; b < K; ++b) {
+                const double truth = trials * (a == b ? p[a] * (1 - p[a]) : -p[a] * p[b]);
+                const double scale = trials * std::sqrt(p[a] * (1 - p[a]) * p[b] * (1 - p[b]));
+                // Standard error of a covariance: at most sqrt(3) scale / sqrt(n), with the kurtosis of N p = 2.
+                EXPECT_LE(std::abs(products[a][b] / pixels - truth), 5 * std::sqrt(3.) * scale / std::sqrt(pixels));
+            }
+    }
+}
+
+TEST(Blended, LightsAreIndependent) {
+    statistics::running_covariance covariance;
+    for (std::uint32_t i = 0; i < 100000; ++i) {
+        const auto pixel = pixel_of<float>(shapes[3], 1, i);
+        covariance.add(static_cast<double>(blended_uniforms(pixel, 0).normal()),
+                       static_cast<double>(blended_uniforms(pixel, 1).normal()));
+    }
+    EXPECT_LE(std::abs(covariance.covariance()) * std::sqrt(100000.), 4.5);
+}
+
+// The published counts: half of the variance, with half vectors two ninths.
+TEST(Blended, InterpolatedCountsLoseTheVariance) {
+    const double variance = 100 * 0.2 * 0.8;
+    statistics::running_moments plain, angular;
+    const distributed_binomial<exact_binomial, interpolated_counts> count;
+    for (std::uint32_t i = 0; i < 20000; ++i) {
+        plain.add(static_cast<double>(count(pixel_of<float>(shapes[3], 100, i), 0.2F)));
+        angular.add(static_cast<double>(count(pixel_with_half_vector<float>(shapes[3], 100, i), 0.2F)));
+    }
+    EXPECT_LE(std::abs(plain.variance() / variance - 0.5), 0.03);
+    EXPECT_LE(std::abs(angular.variance() / variance - 2. / 9), 0.02);
+    EXPECT_LE(std::abs(angular.mean() - 20), 4.5 * angular.standard_error());
+}
+
+// One grid instead of four, by its share: the mean is the same.
+TEST(Blended, OneGridHasTheMean) {
+    statistics::running_moments sample;
+    const distributed_binomial<exact_binomial, interpolated_counts> count;
+    for (std::uint32_t i = 0; i < 100000; ++i) {
+        uniform_stream<float> place(9, i);
+        const float u = place(), v = place();
+        const auto footprint = mica::make_footprint(derivatives_of<float>(5.7F, 0.37F, 0.5F));
+        const auto one = mica::make_one_grid_vertices(footprint, uv_point<float>{u, v}, 20, i, place());
+        sample.add(static_cast<double>(count(one, 0.1F)));
+    }
+    EXPECT_LE(std::abs(sample.mean() - 2), 4.5 * sample.standard_error());
+}
+
+TEST(Blended, VariedDensityKeepsTheMean) {
+    statistics::running_moments trials, counts;
+    for (std::uint32_t i = 0; i < 200000; ++i) {
+        const auto pixel = mica::with_varied_density(pixel_of<float>(shapes[3], 100, i), 0.5F);
+        trials.add(static_cast<double>(pixel.trials));
+        counts.add(static_cast<double>(distributed_binomial<exact_binomial, interpolated_counts>{}(pixel, 0.1F)));
+    }
+    EXPECT_LE(std::abs(trials.mean() - 100), 4.5 * trials.standard_error() + 0.2);
+    EXPECT_LE(std::abs(counts.mean() - 10), 4.5 * counts.standard_error() + 0.02);
+    // A lognormal variance: 100^2 (exp(s^2) - 1).
+    EXPECT_LE(std::abs(trials.variance() / (1e4 * std::expm1(0.25)) - 1), 0.05);
+}
+
+// --- packs are scalars side by side ---------------------------------------------------------------------------------
+
+TEST(Blended, PacksEqualScalarsToTheLastBit) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    for (int round = 0; round < 4000; ++round) {
+        uv_derivatives<number> m;
+        uv_point<number> uv;
+        half_vector_point<number> half_vector;
+        number trials, p;
+        const float scale = std::exp2(8 * unit(random));
+        for (int i = 0; i < lanes; ++i) {
+            m.du_dx.set(i, scale * unit(random));
+            m.dv_dx.set(i, scale * unit(random));
+            m.du_dy.set(i, scale * unit(random) * 0.01F);
+            m.dv_dy.set(i, scale * unit(random) * 0.01F);
+            uv.u.set(i, unit(random));
+            uv.v.set(i, unit(random));
+            half_vector.x.set(i, 10 * unit(random));
+            half_vector.y.set(i, 10 * unit(random));
+            trials.set(i, std::exp2(10 * unit(random)));
+            p.set(i, std::exp2(-5 + 5 * unit(random)));
+        }
+        const auto footprint = mica::make_footprint(m);
+        const auto vertices = mica::make_grid_vertices(footprint, uv, trials, 7U);
+        const auto with_half = mica::make_grid_vertices(footprint, uv, half_vector, trials, 7U);
+        const number blended = distributed_binomial<mica::smooth_quantile_binomial<4>>{}(vertices, p);
+        const number exact = distributed_binomial<exact_binomial>{}(vertices, p);
+        const number counted = distributed_binomial<mica::quantile_binomial<4>, interpolated_counts>{}(vertices, p);
+        const number angular = distributed_binomial<mica::quantile_binomial<4>>{}(with_half, p);
+        for (int i = 0; i < lanes; ++i) {
+            const auto one = mica::make_footprint<float>({m.du_dx[i], m.dv_dx[i], m.du_dy[i], m.dv_dy[i]});
+            ASSERT_EQ(one.sigma_min, footprint.sigma_min[i]);
+            ASSERT_EQ(one.orientation, footprint.orientation[i]);
+            const uv_point<float> at{uv.u[i], uv.v[i]};
+            const half_vector_point<float> h{half_vector.x[i], half_vector.y[i]};
+            const auto alone = mica::make_grid_vertices(one, at, trials[i], 7U);
+            const auto alone_with_half = mica::make_grid_vertices(one, at, h, trials[i], 7U);
+            ASSERT_EQ(alone.grids[2].vertices[1].seed, vertices.grids[2].vertices[1].seed[i]);
+            ASSERT_EQ(distributed_binomial<mica::smooth_quantile_binomial<4>>{}(alone, p[i]), blended[i]);
+            ASSERT_EQ(distributed_binomial<exact_binomial>{}(alone, p[i]), exact[i]);
+            ASSERT_EQ((distributed_binomial<mica::quantile_binomial<4>, interpolated_counts>{}(alone, p[i])),
+                      counted[i]);
+            ASSERT_EQ(distributed_binomial<mica::quantile_binomial<4>>{}(alone_with_half, p[i]), angular[i]);
+        }
+    }
+}
+
+// --- nothing jumps ------------------------------------------------------------------------------------------------
+
+/// What a walk goes along, t from 0 to 1, and how many cells it passes at most.
+struct walk {
+    const char* name;
+    std::function<mica::grid_vertices<double, 4>(double)> at;
+};
+
+mica::grid_vertices<double, 4> double_pixel(double ratio, double turn, double level, uv_point<double> uv,
+                                            half_vector_point<double> half_vector) {
+    const auto footprint = mica::make_footprint(derivatives_of<double>(ratio, turn, level));
+    return mica::make_grid_vertices(footprint, uv, half_vector, 100., 3U);
+}
+
+/// Largest change of f between neighbours of n steps.
+template <class F>
+double largest_change(int steps, const F& f) {
+    double largest = 0, before = f(0.);
+    for (int i = 1; i <= steps; ++i) {
+        const double after = f(static_cast<double>(i) / steps);
+        largest = std::max(largest, std::abs(after - before));
+        before = after;
+    }
+    return largest;
+}
+
+// A continuous function's largest change falls with the length of the steps (as their square root where the weights of a
+// barycentric blend start from 0, as the first power elsewhere); a jump's does not. In double, where nothing is rounded.
+TEST(Blended, VariatesHaveNoJump) {
+    const std::vector<walk> walks{{"uv",
+                                   [](double t) {
+                                       return double_pixel(5.7, 0.37, 0.5, {0.3 + t * 0.01, 0.4 - t * 0.02}, {1, 2});
+                                   }},
+                                  {"scale",
+                                   [](double t) {
+                                       return double_pixel(5.7, 0.37, 0.2 + 3 * t, {0.3, 0.4}, {1, 2});
+                                   }},
+                                  {"ratio",
+                                   [](double t) {
+                                       return double_pixel(1 + 39 * t, 0.37, 0.5, {0.03, 0.04}, {1, 2});
+                                   }},
+                                  {"rotation",
+                                   [](double t) {
+                                       return double_pixel(5.7, 0.999 * t, 0.5, {0.03, 0.04}, {1, 2});
+                                   }},
+                                  {"rotation of a circle",
+                                   [](double t) {
+                                       return double_pixel(1.01, 0.999 * t, 0.5, {0.03, 0.04}, {1, 2});
+                                   }},
+                                  {"half vector", [](double t) {
+                                       return double_pixel(5.7, 0.37, 0.5, {0.3, 0.4}, {-2 + 4 * t, 1 - 3 * t});
+                                   }}};
+    for (const auto& w : walks) {
+        const auto z = [&](double t) {
+            const auto pixel = w.at(t);
+            return blended_uniforms(pixel).normal();
+        };
+        const auto smooth = [&](double t) {
+            return distributed_binomial<mica::smooth_quantile_binomial<4>>{}(w.at(t), 0.02);
+        };
+        const auto soft = [&](double t) {
+            return distributed_binomial<mica::quantile_binomial<4>, mica::softened_variates>{{0.3F}}(w.at(t), 0.02);
+        };
+        const double coarse = largest_change(2000, z), fine = largest_change(32000, z);
+        std::printf("%s: largest change of z %.3g in 2000 steps, %.3g in 32000\n", w.name, coarse, fine);
+        EXPECT_LE(fine, 0.6 * coarse) << w.name;
+        EXPECT_LE(fine, 0.05) << w.name;
+        EXPECT_LE(largest_change(32000, soft), 0.6 * largest_change(2000, soft)) << w.name;
+        EXPECT_LE(largest_change(32000, smooth), 1.) << w.name; // a ramp may be as steep as a count
+    }
+}
+
+// Mirrored half vectors are other half vectors.
+TEST(Blended, HalfVectorsAreNotMirrored) {
+    statistics::running_covariance covariance;
+    for (std::uint32_t i = 0; i < 20000; ++i) {
+        uniform_stream<float> place(11, i);
+        const uv_point<float> uv{place(), place()};
+        const float x = 1 + 9 * place(), y = 1 + 9 * place();
+        const auto footprint = mica::make_footprint(derivatives_of<float>(2, 0.3F, 0.4F));
+        const auto one = mica::make_grid_vertices(footprint, uv, half_vector_point<float>{x, y}, 1, 1U);
+        const auto other = mica::make_grid_vertices(footprint, uv, half_vector_point<float>{-x, y}, 1, 1U);
+        covariance.add(static_cast<double>(blended_uniforms(one).normal()),
+                       static_cast<double>(blended_uniforms(other).normal()));
+    }
+    EXPECT_LE(std::abs(covariance.covariance()) * std::sqrt(20000.), 4.5);
+}
+
+// --- independence ----------------------------------------------------------------------------------------------------
+
+// Two cells apart no vertex is shared.
+TEST(Blended, TwoCellsApartPixelsAreIndependent) {
+    // Level 1 of a circle: cells of the larger of its two levels are 2^(level + 1 - 10) wide, in every direction.
+    const auto footprint = mica::make_footprint(derivatives_of<float>(1, 0, 0.5F));
+    const float cell = std::exp2(-9.F);
+    for (const float angle : {0.F, 1.F, 2.F}) {
+        statistics::running_covariance covariance;
+        constexpr int pixels = 40000;
+        for (std::uint32_t i = 0; i < pixels; ++i) {
+            uniform_stream<float> place(13, i);
+            const uv_point<float> uv{place(), place()};
+            const uv_point<float> apart{uv.u + 2.4F * cell * std::cos(angle), uv.v + 2.4F * cell * std::sin(angle)};
+            const auto one = mica::make_grid_vertices(footprint, uv, 50, 1U);
+            const auto other = mica::make_grid_vertices(footprint, apart, 50, 1U);
+            const double deviation = std::sqrt(50 * 0.1 * 0.9);
+            const distributed_binomial<mica::quantile_binomial<8>> count;
+            covariance.add((static_cast<double>(count(one, 0.1F)) - 5) / deviation,
+                           (static_cast<double>(count(other, 0.1F)) - 5) / deviation);
+        }
+        EXPECT_LE(std::abs(covariance.covariance()) * std::sqrt(1. * pixels), 4.5) << angle;
+    }
+}
+
+/// In place, length a power of two.
+void fourier_transform(std::vector<std::complex<double>>& x) {
+    const std::size_t n = x.size();
+    for (std::size_t i = 1, j = 0; i < n; ++i) {
+        std::size_t bit = n >> 1;
+        for (; j & bit; bit >>= 1) j ^= bit;
+        j ^= bit;
+        if (i < j) std::swap(x[i], x[j]);
+    }
+    for (std::size_t length = 2; length <= n; length *= 2)
+        for (std::size_t i = 0; i < n; i += length)
+            for (std::size_t k = 0; k < length / 2; ++k) {
+                const auto w =
+                    std::polar(1., -2 * 3.14159265358979323846 * static_cast<double>(k) / static_cast<double>(length));
+                const auto a = x[i + k], b = x[i + k + length / 2] * w;
+                x[i + k] = a + b;
+                x[i + k + length / 2] = a - b;
+            }
+}
+
+// The variates of 512 x 512 neighbouring cells are white noise: every coefficient of their spectrum is as large as any
+// other, their squares exponentially distributed.
+TEST(Blended, SpectrumOfCellsIsFlat) {
+    constexpr std::size_t n = 512;
+    for (const std::uint32_t grid : {mica::hash(1U), mica::hash(2U)}) {
+        std::vector<std::complex<double>> rows(n * n);
+        for (std::size_t j = 0; j < n; ++j) {
+            std::vector<std::complex<double>> row(n);
+            for (std::size_t i = 0; i < n; ++i) {
+                const auto seed = mica::cell_seed(grid, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
+                row[i] =
+                    static_cast<double>(mica::normal_pair_from_bits<float>(mica::mix(mica::hash(7U) ^ seed)).first);
+            }
+            fourier_transform(row);
+            for (std::size_t i = 0; i < n; ++i) rows[i * n + j] = row[i];
+        }
+        // |c|^2 / n^2 is exponential with mean 1: uniform after 1 - exp(-x); half of the coefficients are conjugates.
+        constexpr int cells = 64;
+        statistics::histogram observed(0, 1, cells, cells - 1);
+        double largest = 0;
+        for (std::size_t i = 1; i < n / 2; ++i) {
+            std::vector<std::complex<double>> column(rows.begin() + static_cast<std::ptrdiff_t>(i * n),
+                                                     rows.begin() + static_cast<std::ptrdiff_t>((i + 1) * n));
+            fourier_transform(column);
+            for (const auto& c : column) {
+                const double power = std::norm(c) / static_cast<double>(n * n);
+                observed.add(std::floor(cells * -std::expm1(-power)));
+                largest = std::max(largest, power);
+            }
+        }
+        const std::vector<double> probabilities(cells, 1. / cells);
+        EXPECT_TRUE(statistics::passes(statistics::goodness_of_fit(probabilities, observed.observed()).p_value));
+        EXPECT_LE(largest, std::log(n * n / 2.) + 14); // one in a million spectra goes beyond
+    }
+}
+
+// --- the edges of the domain -----------------------------------------------------------------------------------------
+
+template <class Derivatives>
+bool resolved(const Derivatives& m, uv_point<float> uv) {
+    return mica::make_grid_vertices(mica::make_footprint<float>(m), uv, 10, 1U).resolved;
+}
+
+TEST(Domain, EndsWhereItSays) {
+    const float scale = mica::default_footprint_scale;
+    // Ratio 2^16.
+    EXPECT_TRUE(resolved(uv_derivatives<float>{6.5e-1F, 0, 0, 1e-5F}, {0, 0}));
+    EXPECT_FALSE(resolved(uv_derivatives<float>{6.6e-1F, 0, 0, 1e-5F}, {0, 0}));
+    // 2^18 cells from the origin.
+    EXPECT_TRUE(resolved(uv_derivatives<float>{1e-3F, 0, 0, 1e-3F}, {0x1p18F * 1e-3F * scale * 0.999F, 0}));
+    EXPECT_FALSE(resolved(uv_derivatives<float>{1e-3F, 0, 0, 1e-3F}, {0, -0x1p18F * 1e-3F * scale * 1.001F}));
+    // Levels -40 and 40.
+    const float smallest = 0x1p-40F / scale, largest = 0x1p40F / scale;
+    EXPECT_TRUE(resolved(uv_derivatives<float>{smallest * 1.01F, 0, 0, smallest * 1.01F}, {0, 0}));
+    EXPECT_FALSE(resolved(uv_derivatives<float>{smallest * 0.99F, 0, 0, smallest * 0.99F}, {0, 0}));
+    EXPECT_TRUE(resolved(uv_derivatives<float>{largest * 0.99F, 0, 0, largest * 0.99F}, {0, 0}));
+    EXPECT_FALSE(resolved(uv_derivatives<float>{largest * 1.01F, 0, 0, largest * 1.01F}, {0, 0}));
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_FALSE(resolved(uv_derivatives<float>{1, 0, 0, 1}, {nan, 0}) &&
+                 resolved(uv_derivatives<float>{1, 0, 0, 1}, {0, nan}));
+}
+
+// At the edge the law still holds: the uniforms are uniform, for as long as places differ.
+TEST(Domain, LawHoldsAtTheEdge) {
+    const statistics::binomial_case c{20, 0.1};
+    for (const bool at_ratio : {true, false}) {
+        statistics::binomial_sample sample(c);
+        for (std::uint32_t i = 0; i < 200000; ++i) {
+            uniform_stream<float> place(17, i);
+            const float turn = place(), u = place(), v = place();
+            const auto footprint = mica::make_footprint(derivatives_of<float>(at_ratio ? 6e4F : 2, turn, place()));
+            const float far = at_ratio ? 1.F : 0x1p17F * footprint.sigma_min * mica::default_footprint_scale;
+            auto pixel = mica::make_grid_vertices(footprint, uv_point<float>{far * (1 + u), far * (1 - v)}, 20, i);
+            ASSERT_TRUE(pixel.resolved);
+            sample.add(static_cast<double>(distributed_binomial<exact_binomial>{}(pixel, 0.1F)));
+        }
+        EXPECT_TRUE(statistics::passes(sample.judge().p_value));
+    }
+}
+
+TEST(Domain, BeyondItTheCountIsTheMean) {
+    const auto footprint = mica::make_footprint<float>({1, 0, 0, 1e-6F});
+    const auto pixel = mica::make_grid_vertices(footprint, uv_point<float>{0.3F, 0.4F}, 20, 1U);
+    EXPECT_FALSE(pixel.resolved);
+    EXPECT_EQ(distributed_binomial<exact_binomial>{}(pixel, 0.25F), 5.F);
+    EXPECT_EQ((distributed_binomial<exact_binomial, interpolated_counts>{}(pixel, 0.25F)), 5.F);
+    EXPECT_EQ((mica::distributed_multinomial<2, exact_binomial>{}(pixel, std::array{0.25F, 0.5F})[1]), 10.F);
+}
+
+// --- softness ---------------------------------------------------------------------------------------------------------
+
+// Over the variate by the midpoint rule: mean within half a percent, and the variance that is left, as softened_quantile.hpp
+// states it.
+TEST(Softened, MeanAndVariance) {
+    const auto moments = [](float trials, float probability, float softness) {
+        double first = 0, second = 0;
+        constexpr int steps = 20000;
+        for (int i = 0; i < steps; ++i) {
+            const double z = statistics::normal_quantile((i + 0.5) / steps);
+            const double n = static_cast<double>(
+                mica::quantile_binomial<4>::softened(trials, probability, static_cast<float>(z), softness).successes);
+            first += n / steps;
+            second += n * n / steps;
+        }
+        return std::pair{first, second - first * first};
+    };
+    struct stated {
+        float softness;
+        double whole, real; ///< least variance for whole N, and for real N, which is interpolated between whole ones
+    };
+    for (const auto& [softness, least_whole, least_real] :
+         {stated{0.05F, 0.94, 0.48}, {0.1F, 0.89, 0.46}, {0.25F, 0.74, 0.42}, {0.5F, 0.49, 0.31}}) {
+        double worst = 0, whole = 1, real = 1, most = 0;
+        for (const float trials : {0.5F, 1.F, 1.5F, 3.F, 8.F, 50.F, 300.5F, 1e4F})
+            for (const float probability : {0.002F, 0.02F, 0.2F, 0.5F, 0.8F}) {
+                const double n = static_cast<double>(trials), p = static_cast<double>(probability);
+                if (n * std::min(p, 1 - p) < 0.01) continue; // the midpoint rule has no points out there
+                const auto [mean, variance] = moments(trials, probability, softness);
+                const double f = n - std::floor(n), truth = n * p * (1 - p) + f * (1 - f) * p * p;
+                worst = std::max(worst, std::abs(mean / (n * p) - 1));
+                if (n * p < 0.75) continue;
+                (f > 0 ? real : whole) = std::min(f > 0 ? real : whole, variance / truth);
+                most = std::max(most, variance / truth);
+            }
+        std::printf("softness %g: mean within %.2g; variance, N p >= 0.75: whole N at least %.3f, real N %.3f\n",
+                    static_cast<double>(softness), worst, whole, real);
+        EXPECT_LE(worst, 0.001) << softness;
+        EXPECT_LE(most, 1.002);
+        EXPECT_TRUE(whole >= least_whole && real >= least_real) << softness;
+    }
+}
+
+TEST(Softened, LittleSoftnessIsTheLaw) {
+    for (const float trials : {1.F, 8.F, 50.F, 1000.F})
+        for (const float probability : {0.02F, 0.3F, 0.7F})
+            for (int i = 1; i < 400; ++i) {
+                const float u = static_cast<float>(i) / 400.5F;
+                const float soft =
+                    mica::quantile_binomial<8>::softened(trials, probability, -mica::normal_quantile(u), 1e-3F)
+                        .successes;
+                const float hard = mica::quantile_binomial<8>{}(trials, probability, [&] { return u; }).successes;
+                // Between the gates a step of the law; beyond, real counts.
+                EXPECT_LE(std::abs(soft - hard), 1.01F) << trials << ' ' << probability << ' ' << u;
+            }
+}
+
+} // namespace
