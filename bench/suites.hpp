@@ -25,5 +25,6 @@ inline const std::vector<std::pair<std::string, streams::binomial>>& curve_point
 
 void register_laws();
 void register_peers();
+void register_grids();
 
 } // namespace suites

@@ -29,8 +29,6 @@ using mica::uniform_stream;
 using mica::uv_derivatives;
 using mica::uv_point;
 
-constexpr float pi = 3.14159265F;
-
 /// Derivatives of a pixel whose footprint has the minor semi-axis 2^level / scale, so that it lies `level` levels up.
 struct shape {
     float ratio;
@@ -454,39 +452,81 @@ void fourier_transform(std::vector<std::complex<double>>& x) {
             }
 }
 
-// The variates of 512 x 512 neighbouring cells are white noise: every coefficient of their spectrum is as large as any
-// other, their squares exponentially distributed.
-TEST(Blended, SpectrumOfCellsIsFlat) {
+/// The variates of 512 x 512 seeds are white noise: every coefficient of their spectrum is as large as any other, their
+/// squares exponentially distributed.
+template <class Seed>
+void expect_flat_spectrum(const Seed& seed) {
     constexpr std::size_t n = 512;
-    for (const std::uint32_t grid : {mica::hash(1U), mica::hash(2U)}) {
-        std::vector<std::complex<double>> rows(n * n);
-        for (std::size_t j = 0; j < n; ++j) {
-            std::vector<std::complex<double>> row(n);
-            for (std::size_t i = 0; i < n; ++i) {
-                const auto seed = mica::cell_seed(grid, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
-                row[i] =
-                    static_cast<double>(mica::normal_pair_from_bits<float>(mica::mix(mica::hash(7U) ^ seed)).first);
-            }
-            fourier_transform(row);
-            for (std::size_t i = 0; i < n; ++i) rows[i * n + j] = row[i];
+    std::vector<std::complex<double>> rows(n * n);
+    for (std::size_t j = 0; j < n; ++j) {
+        std::vector<std::complex<double>> row(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::uint32_t bits = mica::mix(mica::hash(7U) ^ seed(static_cast<int>(i), static_cast<int>(j)));
+            row[i] = static_cast<double>(mica::normal_pair_from_bits<float>(bits).first);
         }
-        // |c|^2 / n^2 is exponential with mean 1: uniform after 1 - exp(-x); half of the coefficients are conjugates.
-        constexpr int cells = 64;
-        statistics::histogram observed(0, 1, cells, cells - 1);
-        double largest = 0;
-        for (std::size_t i = 1; i < n / 2; ++i) {
-            std::vector<std::complex<double>> column(rows.begin() + static_cast<std::ptrdiff_t>(i * n),
-                                                     rows.begin() + static_cast<std::ptrdiff_t>((i + 1) * n));
-            fourier_transform(column);
-            for (const auto& c : column) {
-                const double power = std::norm(c) / static_cast<double>(n * n);
-                observed.add(std::floor(cells * -std::expm1(-power)));
-                largest = std::max(largest, power);
+        fourier_transform(row);
+        for (std::size_t i = 0; i < n; ++i) rows[i * n + j] = row[i];
+    }
+    // |c|^2 / n^2 is exponential with mean 1, so 1 - exp(-x) is uniform. One half: the other has the conjugates.
+    constexpr int cells = 64;
+    statistics::histogram observed(0, 1, cells, cells - 1);
+    double largest = 0;
+    for (std::size_t i = 1; i < n / 2; ++i) {
+        std::vector<std::complex<double>> column(rows.begin() + static_cast<std::ptrdiff_t>(i * n),
+                                                 rows.begin() + static_cast<std::ptrdiff_t>((i + 1) * n));
+        fourier_transform(column);
+        for (const auto& c : column) {
+            const double power = std::norm(c) / static_cast<double>(n * n);
+            observed.add(std::floor(cells * -std::expm1(-power)));
+            largest = std::max(largest, power);
+        }
+    }
+    const std::vector<double> probabilities(cells, 1. / cells);
+    EXPECT_TRUE(statistics::passes(statistics::goodness_of_fit(probabilities, observed.observed()).p_value));
+    EXPECT_LE(largest, std::log(n * n / 2.) + 14); // one in a million spectra goes beyond
+}
+
+TEST(Blended, SpectrumOfSeedsIsFlat) {
+    using Grid = mica::tetrahedron_vertex<float>;
+    const std::uint32_t grid = mica::grid_seed(1U, Grid{-7, 2, 3, 1, 1});
+    // Neighbouring cells; orientations by cells; levels and ratios by cells; cells of half vectors.
+    expect_flat_spectrum([=](int i, int j) {
+        return mica::cell_seed(grid, static_cast<std::uint32_t>(i - 256), static_cast<std::uint32_t>(j - 256));
+    });
+    expect_flat_spectrum([](int i, int j) {
+        return mica::cell_seed(mica::grid_seed(1U, Grid{-7, 7, i, 1, 1}), static_cast<std::uint32_t>(j), 0U);
+    });
+    expect_flat_spectrum([](int i, int j) {
+        return mica::cell_seed(mica::grid_seed(1U, Grid{i % 64 - 32, 1 + i / 64, 0, 1, 1}), 5U,
+                               static_cast<std::uint32_t>(j));
+    });
+    expect_flat_spectrum([=](int i, int j) {
+        std::array<mica::angular_vertex<float>, 4> cells;
+        const half_vector_point<float> at{static_cast<float>(i) - 256.5F, static_cast<float>(j) - 256.5F};
+        mica::find_enclosing_square(at, grid, cells);
+        return cells[0].seed;
+    });
+}
+
+// --- the screen ------------------------------------------------------------------------------------------------------
+
+// A turned screen sees the same ellipse.
+TEST(Blended, RotationOfTheScreenChangesNothing) {
+    for (const auto& s : shapes) {
+        const auto still = mica::make_footprint(derivatives_of<float>(s.ratio, s.turn, s.level));
+        for (int i = 0; i <= 100; ++i) {
+            const float turn = static_cast<float>(i) / 100;
+            const auto turned = mica::make_footprint(derivatives_of<float>(s.ratio, s.turn, s.level, turn));
+            // The derivatives are rounded: 1e-7 of the long axis, and of the short one `ratio` times as much.
+            const float rounding = 5e-7F * (1 + s.ratio);
+            EXPECT_NEAR(turned.sigma_max / still.sigma_max, 1, 1e-6F);
+            EXPECT_NEAR(turned.sigma_min / still.sigma_min, 1, rounding);
+            EXPECT_NEAR(turned.area / still.area, 1, rounding);
+            const float apart = std::abs(turned.orientation - still.orientation);
+            if (s.ratio > 1) {
+                EXPECT_LE(std::min(apart, 1 - apart), 3e-6F);
             }
         }
-        const std::vector<double> probabilities(cells, 1. / cells);
-        EXPECT_TRUE(statistics::passes(statistics::goodness_of_fit(probabilities, observed.observed()).p_value));
-        EXPECT_LE(largest, std::log(n * n / 2.) + 14); // one in a million spectra goes beyond
     }
 }
 

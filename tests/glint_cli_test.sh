@@ -84,6 +84,17 @@ errors() {
     expect_error 'help' render --wings 2
     expect_error "unknown law" furnace --law poisson
     expect_error 'not positive' furnace --precision 0
+    expect_error 'softness 1' render --softness 1 $small
+    expect_error 'softness' render --softness nan $small
+    expect_error 'needs --law quantile' render --softness 0.2 --law exact $small
+    expect_error 'is for --interpolate variates' render --softness 0.2 --interpolate counts $small
+    expect_error "unknown mode 'guess'" compare --mode guess -o x.png
+    expect_error "unknown law 'gaussian'" compare --law gaussian -o x.png
+    expect_error 'trials' compare --trials 1e9 -o x.png
+    expect_error 'probability' compare --probability 2 -o x.png
+    expect_error 'ratio' compare --ratio 0.5 -o x.png
+    expect_error 'cannot be written' compare -o nowhere/x.png
+    expect_error 'cannot be written' strips -o nowhere/x.png
     "$glint" render --env whole.hdr $small --json >out.json || fail "a whole .hdr is not accepted"
     [ "$(head -c 4 x.png | tail -c 3)" = PNG ] || fail "no PNG"
     for field in width height law levels seconds ns_per_pixel binomials_per_pixel mean_glint mean_smooth; do
@@ -120,6 +131,36 @@ environments() {
         head -c 200000 "$map" >truncated.hdr
         expect_error 'truncated' render --env truncated.hdr --size 8x8 -o x2.png
     done
+}
+
+# Variates have the law, counts about half of its variance, and every row has its fields.
+comparison() {
+    "$glint" compare --mode counts,variates,facets --ratio 1,16 --trials 1.5,50 --probability 0.02,0.5 --samples 65536 \
+        --json -o compare.png >rows.json || fail "compare"
+    [ "$(grep -c '"mode"' rows.json)" -eq 48 ] || fail "not 48 rows: $(cat rows.json)"
+    for field in mode footprint_ratio trials probability mean_ratio variance_ratio p0 p0_exact tv correlation_length \
+        jumps evaluations_per_pixel ns_per_pixel; do
+        [ "$(grep -c "\"$field\": " rows.json)" -eq 48 ] || fail "no field $field"
+    done
+    awk -F'[:,] *' '
+        /"mode"/ {
+            gsub(/[{}"]/, "")
+            for (i = 1; i < NF; i += 2) { gsub(/^ +/, "", $i); row[$i] = $(i + 1) }
+            far = row["mean_ratio"] - 1; error = row["mean_error"]
+            bad = 0
+            if (row["mode"] == "variates") {
+                bad = far > 5 * error || far < -5 * error || row["evaluations_per_pixel"] != 1
+                if (row["variance_ratio"] - 1 > 5 * row["variance_error"] + 0.001) bad = 1
+                if (1 - row["variance_ratio"] > 5 * row["variance_error"] + 0.001) bad = 1
+                if (row["tv"] > 3 * row["tv_by_chance"] + 0.001) bad = 1
+                if (row["jumps"] > 0.6) bad = 1
+            }
+            if (row["mode"] == "counts" && (row["variance_ratio"] > 0.62 || row["evaluations_per_pixel"] != 12)) bad = 1
+            if (bad) { print; failed = 1 }
+        }
+        END { exit failed }' rows.json || fail "rows that miss what is demanded"
+    "$glint" strips -o strips.png >/dev/null || fail "strips"
+    [ "$(head -c 4 strips.png | tail -c 3)" = PNG ] || fail "no strips"
 }
 
 furnace() {

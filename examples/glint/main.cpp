@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
 
+#include "compare.hpp"
 #include "render.hpp"
 
 namespace {
@@ -73,6 +74,45 @@ int run(int argc, char** argv) {
     furnace_command->add_flag("--json", furnace.json, "print {\"rows\": [...]}");
     add_threads(furnace_command);
 
+    glint::compare_options compare;
+    CLI::App* const compare_command = app.add_subcommand(
+        "compare",
+        "counts, variates and explicit facets side by side: a picture, and how far each is from the binomial");
+    compare_command->add_option("--law", compare.law, "binomial law: quantile, quantile:8 or exact")
+        ->capture_default_str();
+    compare_command->add_option("--mode", compare.modes, "counts, variates, facets, facets_uniform")->delimiter(',');
+    compare_command->add_option("--ratio", compare.ratios, "length over width of the footprints")->delimiter(',');
+    compare_command->add_option("--trials", compare.trials, "facets in a footprint, real")->delimiter(',');
+    compare_command->add_option("--probability", compare.probabilities, "of a flash")->delimiter(',');
+    compare_command->add_option("--precision", compare.precision, "standard error of mean_ratio to reach")
+        ->capture_default_str();
+    compare_command->add_option("--samples", compare.most_samples, "at most so many samples a row")
+        ->capture_default_str();
+    compare_command->add_option("--scale", compare.footprint_scale, "size of a glint, in pixels")
+        ->capture_default_str();
+    compare_command->add_option("--seed", compare.seed, "which realisation")->capture_default_str();
+    compare_command->add_option("-o,--output", compare.output, "PNG to write")->capture_default_str();
+    compare_command->add_flag("--json", compare.json, "print {\"rows\": [...]}");
+    add_threads(compare_command);
+
+    glint::strips_options strips;
+    CLI::App* const strips_command =
+        app.add_subcommand("strips", "frames of a zoom, a rotation and a pan, by counts and by variates");
+    strips_command->add_option("--seed", strips.seed, "which realisation")->capture_default_str();
+    strips_command->add_option("-o,--output", strips.output, "PNG to write")->capture_default_str();
+
+    glint::cells_options cells;
+    CLI::App* const cells_command =
+        app.add_subcommand("cells", "the variates of 512 x 512 neighbouring cells, as grey");
+    cells_command->add_option("--seed", cells.seed, "which realisation")->capture_default_str();
+    cells_command->add_option("-o,--output", cells.output, "PNG to write")->capture_default_str();
+
+    glint::between_options between;
+    CLI::App* const between_command =
+        app.add_subcommand("between", "distributions of counts on and between two levels of the grids");
+    between_command->add_option("--seed", between.seed, "which realisation")->capture_default_str();
+    between_command->add_flag("--json", between.json, "print {\"rows\": [...]}");
+
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) { // --help, --version
@@ -90,6 +130,10 @@ int run(int argc, char** argv) {
     if (*render_command) glint::render(render);
     if (*sheet_command) glint::sheet(sheet);
     if (*furnace_command) glint::furnace(furnace);
+    if (*compare_command) glint::compare(compare);
+    if (*strips_command) glint::strips(strips);
+    if (*cells_command) glint::cells(cells);
+    if (*between_command) glint::between(between);
     if (std::fflush(stdout) != 0) throw std::runtime_error("standard output cannot be written");
     return 0;
 }

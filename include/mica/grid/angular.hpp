@@ -37,12 +37,14 @@ MICA_HOST_DEVICE constexpr void find_enclosing_square(half_vector_point<Real> ha
     const auto [whole_y, fy] = detail::split_at_integer(y);
     const Index i = detail::hashable<Real>(whole_x), j = detail::hashable<Real>(whole_y);
     const Real gx = Real(1) - fx, gy = Real(1) - fy;
-    const Index row = row_hash(seed, i), next_row = row_hash(seed, Index(i + Index(1U)));
-    const Index column = column_hash(seed, j), next_column = column_hash(seed, Index(j + Index(1U)));
-    cells[0] = {row ^ column, gx * gy};
-    cells[1] = {next_row ^ column, fx * gy};
-    cells[2] = {row ^ next_column, gx * fy};
-    cells[3] = {next_row ^ next_column, fx * fy};
+    // Multiples of the two fractions that lie most evenly in the square (the plastic number's, after Roberts): cells near
+    // each other have numbers far apart. Whoever draws hashes them.
+    const Index step_x(0xc13fa9a9U), step_y(0x91e10da5U);
+    const Index cell = seed + i * step_x + j * step_y;
+    cells[0] = {cell, gx * gy};
+    cells[1] = {cell + step_x, fx * gy};
+    cells[2] = {cell + step_y, gx * fy};
+    cells[3] = {cell + step_x + step_y, fx * fy};
 }
 
 } // namespace mica

@@ -61,8 +61,9 @@ lane_of_vertices(const grid_vertices<Real, HalfVectors, Grids>& vertices, int i)
     return result;
 }
 
-/// Published size of a glint, in pixels.
-inline constexpr float default_footprint_scale = 1.5F;
+/// Size of a glint, in pixels. With it the autocorrelation of blended variates is as wide as that of facets seen through the
+/// ellipse with semi-axes sigma, within a quarter where N p >= 1 (docs/grids.md); published is 1.5.
+inline constexpr float default_footprint_scale = 1.4F;
 
 /// Footprints of a larger ratio are not resolved.
 inline constexpr float largest_grid_ratio = 0x1p16F;
