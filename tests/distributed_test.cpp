@@ -99,7 +99,8 @@ TEST(GridVertices, TrialsFollowTheSharesOfTheGrids) {
     for (int i = 0; i < 1000; ++i) {
         const auto where = random();
         const auto pixel = all_vertices(vertices_at(where, 1000, 5));
-        const auto grids = mica::enclosing_tetrahedron(mica::make_footprint(where.derivatives), 1.5F);
+        const auto grids =
+            mica::enclosing_tetrahedron(mica::make_footprint(where.derivatives), mica::default_footprint_scale);
         for (std::size_t grid = 0; grid < 4; ++grid) ASSERT_FLOAT_EQ(pixel[3 * grid].trials, 1000 * grids[grid].share);
     }
 }

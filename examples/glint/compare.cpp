@@ -266,7 +266,8 @@ compare_row facets_row(const std::string& mode, const patch_footprint& shape, co
     // So many footprints of one set that they hardly share facets; so many that it takes a second or so.
     const auto per_set = static_cast<std::size_t>(std::clamp(density / law.trials / 2, 32., 16384.));
     const double wanted = std::min(options.most_samples, std::max(4096., 3e7 / law.trials));
-    const auto sets = static_cast<std::size_t>(std::clamp(wanted / static_cast<double>(per_set), 2., 32.));
+    const double most_sets = per_side > 400 ? 8 : 32; // making a large set takes most of the time
+    const auto sets = static_cast<std::size_t>(std::clamp(wanted / static_cast<double>(per_set), 2., most_sets));
     struct part {
         count_sums sums;
         std::vector<double> sigma, disc;

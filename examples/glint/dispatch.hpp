@@ -22,19 +22,15 @@ namespace glint {
 using compiled_levels = std::index_sequence<2, 3, 4, 5, 6, 7, 8>;
 
 /// The names that with_law() knows.
-inline constexpr char known_laws[] = "gaussian, bernoulli_sum, floored_gated, gated, dual_gated, quantile, quantile:2, "
-                                     "quantile:4, quantile:8, quantile:16, smooth_quantile, smooth_quantile:4, "
-                                     "smooth_quantile:8, exact";
+inline constexpr char known_laws[] = "gaussian, bernoulli_sum, floored_gated, gated, dual_gated, quantile, quantile:4, "
+                                     "quantile:8, smooth_quantile, smooth_quantile:4, exact";
 
 /// Calls body(Law{}) with the law of that name.
 template <class Body>
 void with_law(const std::string& name, const Body& body) {
     if (name == "quantile" || name == "quantile:4") return body(mica::quantile_binomial<4>{});
-    if (name == "quantile:2") return body(mica::quantile_binomial<2>{});
     if (name == "quantile:8") return body(mica::quantile_binomial<8>{});
-    if (name == "quantile:16") return body(mica::quantile_binomial<16>{});
     if (name == "smooth_quantile" || name == "smooth_quantile:4") return body(mica::smooth_quantile_binomial<4>{});
-    if (name == "smooth_quantile:8") return body(mica::smooth_quantile_binomial<8>{});
     if (name == "dual_gated") return body(mica::dual_gated_binomial{});
     if (name == "gated") return body(mica::gated_binomial{});
     if (name == "floored_gated") return body(mica::floored_gated_binomial{});

@@ -100,5 +100,8 @@ template <hash_index Index>
 MICA_HOST_DEVICE constexpr Index cell_seed(Index grid, std::type_identity_t<Index> i, std::type_identity_t<Index> j) {
     return row_hash(grid, i) ^ column_hash(grid, j);
 }
+MICA_HOST_DEVICE constexpr std::uint32_t cell_seed(std::uint32_t grid, std::int32_t i, std::int32_t j) {
+    return cell_seed<std::uint32_t>(grid, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
+}
 
 } // namespace mica
