@@ -125,8 +125,9 @@ double half_width(const std::vector<double>& products, double step) {
     return step * static_cast<double>(products.size() - 1);
 }
 
-constexpr double lag_step = 1. / 16;
-constexpr std::size_t lags = 64; // to four pixels
+constexpr double farthest_lag = 4;         // pixels
+constexpr std::size_t lags = 64;           // of counts and variates
+constexpr std::size_t lags_of_facets = 16; // which take longer
 
 // --- counts and variates ----------------------------------------------------------------------------------------
 
@@ -155,6 +156,7 @@ count_sums sampled(const Patch& patch, const binomial_reference& law, std::uint3
 
 template <class Patch>
 double correlation_length(const Patch& patch, const binomial_reference& law, std::uint32_t first_seed) {
+    constexpr double lag_step = farthest_lag / lags;
     std::vector<double> products(lags + 1, 0.);
     const number trials(static_cast<float>(law.trials)), p(static_cast<float>(law.p));
     const auto step = patch.shape.template derivatives<number>();
@@ -261,7 +263,8 @@ compare_row facets_row(const std::string& mode, const patch_footprint& shape, co
                        static_cast<double>(m.dv_dy),
                        radius};
     };
-    const double pixel_radius = seen_at(0, 0, 0).radius + 1 / std::sqrt(std::numbers::pi);
+    const double pixel_radius = 1 / std::sqrt(std::numbers::pi);
+    constexpr double lag_step = farthest_lag / lags_of_facets;
 
     // So many footprints of one set that they hardly share facets; so many that it takes a second or so.
     const auto per_set = static_cast<std::size_t>(std::clamp(density / law.trials / 2, 32., 16384.));
@@ -273,8 +276,8 @@ compare_row facets_row(const std::string& mode, const patch_footprint& shape, co
         std::vector<double> sigma, disc;
         double seconds;
     };
-    std::vector<part> parts(sets,
-                            {count_sums(law), std::vector<double>(lags + 1, 0.), std::vector<double>(lags + 1, 0.), 0});
+    std::vector<part> parts(sets, {count_sums(law), std::vector<double>(lags_of_facets + 1, 0.),
+                                   std::vector<double>(lags_of_facets + 1, 0.), 0});
     tbb::parallel_for(std::size_t{0}, sets, [&](std::size_t i) {
         const facet_set set(per_side, positions, mica::hash(seed, static_cast<std::uint32_t>(i)));
         std::mt19937 random(mica::hash(seed, static_cast<std::uint32_t>(i), 1U));
@@ -294,12 +297,12 @@ compare_row facets_row(const std::string& mode, const patch_footprint& shape, co
             const auto products = [&](std::vector<double>& sum, double radius) {
                 const double mean = law.mean() * std::numbers::pi * radius * radius;
                 double first = 0;
-                for (std::size_t lag = 0; lag <= lags; lag += 4) {
+                for (std::size_t lag = 0; lag <= lags_of_facets; ++lag) {
                     const double t = lag_step * static_cast<double>(lag);
                     const double x =
                         lit(u + t * static_cast<double>(m.du_dy), v + t * static_cast<double>(m.dv_dy), radius) - mean;
                     if (lag == 0) first = x;
-                    sum[lag / 4] += first * x;
+                    sum[lag] += first * x;
                 }
             };
             products(parts[i].sigma, 1);
@@ -308,7 +311,7 @@ compare_row facets_row(const std::string& mode, const patch_footprint& shape, co
     });
     compare_row row{mode, shape, level_fraction(shape, options),           law, count_sums(law),
                     0,    0,     std::numeric_limits<double>::quiet_NaN(), 0,   0};
-    std::vector<double> sigma(lags / 4 + 1, 0.), disc(lags / 4 + 1, 0.);
+    std::vector<double> sigma(lags_of_facets + 1, 0.), disc(lags_of_facets + 1, 0.);
     for (const auto& one : parts) {
         row.sums.add(one.sums);
         row.ns += one.seconds * 1e9;
@@ -318,8 +321,8 @@ compare_row facets_row(const std::string& mode, const patch_footprint& shape, co
         }
     }
     row.ns /= row.sums.samples();
-    row.correlation_length = half_width(sigma, 4 * lag_step);
-    row.correlation_length_disc = half_width(disc, 4 * lag_step);
+    row.correlation_length = half_width(sigma, lag_step);
+    row.correlation_length_disc = half_width(disc, lag_step);
     return row;
 }
 
@@ -367,17 +370,8 @@ constexpr std::size_t panel = 192, gap = 8, header = 24, enlarged = 2;
 /// Grey by count / mean, so that the modes compare.
 template <class Count>
 void draw_panel(srgb_picture& picture, std::size_t left, std::size_t top, double mean, const Count& count) {
-    radiance_picture values{panel * enlarged, panel * enlarged,
-                            std::vector<mica::rgb<float>>(panel * enlarged * panel * enlarged)};
-    tbb::parallel_for(std::size_t{0}, panel, [&](std::size_t y) {
-        for (std::size_t x = 0; x < panel; ++x) {
-            const auto grey = static_cast<float>(count(static_cast<double>(x), static_cast<double>(y)) / mean);
-            for (std::size_t j = 0; j < enlarged; ++j)
-                for (std::size_t i = 0; i < enlarged; ++i)
-                    values.pixels[(enlarged * y + j) * panel * enlarged + enlarged * x + i] = {grey, grey, grey};
-        }
-    });
-    tone_map(values, 0.4F, picture, left, top);
+    draw_patch(picture, left, top, panel, enlarged, 0.4F,
+               [&](double x, double y) { return static_cast<float>(count(x, y) / mean); });
 }
 
 template <class Law>

@@ -3,13 +3,14 @@
 
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <numbers>
-#include <string>
 
 #include <mica/grid/distributed.hpp>
 #include <mica/numeric/pack.hpp>
 #include <mica/reference/facets.hpp>
+#include <tbb/parallel_for.h>
+
+#include "picture.hpp"
 
 namespace glint {
 
@@ -44,5 +45,22 @@ struct distributed_patch {
     }
     static constexpr std::size_t evaluations = Interpolation::template evaluations<mica::grid_vertices<float>>;
 };
+
+/// Draws grey(x, y), linear, for size x size pixels, each `enlarged` pixels wide; rows side by side.
+template <class Grey>
+void draw_patch(srgb_picture& picture, std::size_t left, std::size_t top, std::size_t size, std::size_t enlarged,
+                float exposure, const Grey& grey) {
+    const std::size_t side = size * enlarged;
+    radiance_picture values{side, side, std::vector<mica::rgb<float>>(side * side)};
+    tbb::parallel_for(std::size_t{0}, size, [&](std::size_t y) {
+        for (std::size_t x = 0; x < size; ++x) {
+            const float value = grey(static_cast<double>(x), static_cast<double>(y));
+            for (std::size_t j = 0; j < enlarged; ++j)
+                for (std::size_t i = 0; i < enlarged; ++i)
+                    values.pixels[(enlarged * y + j) * side + enlarged * x + i] = {value, value, value};
+        }
+    });
+    tone_map(values, exposure, picture, left, top);
+}
 
 } // namespace glint

@@ -34,22 +34,15 @@ constexpr double base_level = -9.7;
 
 template <class Law, class Interpolation>
 void draw_frame(srgb_picture& picture, std::size_t left, std::size_t top, const camera& seen, std::uint32_t seed) {
-    constexpr std::size_t side = frame_size * enlarged;
-    radiance_picture values{side, side, std::vector<mica::rgb<float>>(side * side)};
     const auto footprint = mica::make_footprint(seen.derivatives());
     // Few and bright, and always the same facets per uv^2.
     const float density = static_cast<float>(40 / std::exp2(2 * base_level)), probability = 0.01F;
     const float trials = density * footprint.area;
-    for (std::size_t y = 0; y < frame_size; ++y)
-        for (std::size_t x = 0; x < frame_size; ++x) {
-            const auto uv = seen.uv(static_cast<double>(x) - frame_size / 2., static_cast<double>(y) - frame_size / 2.);
-            const auto vertices = mica::make_grid_vertices(footprint, uv, trials, seed);
-            const float count = mica::distributed_binomial<Law, Interpolation>{}(vertices, probability);
-            for (std::size_t j = 0; j < enlarged; ++j)
-                for (std::size_t i = 0; i < enlarged; ++i)
-                    values.pixels[(enlarged * y + j) * side + enlarged * x + i] = {count, count, count};
-        }
-    tone_map(values, 0.8F, picture, left, top);
+    draw_patch(picture, left, top, frame_size, enlarged, 0.8F, [&](double x, double y) {
+        const auto uv = seen.uv(x - frame_size / 2., y - frame_size / 2.);
+        const auto vertices = mica::make_grid_vertices(footprint, uv, trials, seed);
+        return mica::distributed_binomial<Law, Interpolation>{}(vertices, probability);
+    });
 }
 
 } // namespace

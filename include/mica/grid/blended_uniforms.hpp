@@ -27,6 +27,10 @@ template <real_number Real, std::size_t HalfVectors>
 MICA_HOST_DEVICE constexpr Real weight_of_variate(const grid_vertex<Real, HalfVectors>& vertex) {
     return vertex.variate_weight;
 }
+template <real_number Real, std::size_t HalfVectors>
+MICA_HOST_DEVICE constexpr Real weight_of_variate(const pixel_grid<Real, HalfVectors>& grid) {
+    return grid.variate_weight;
+}
 
 /// The weighted sum of the pairs of all elements.
 template <real_number Real, class Elements, class Pair>
@@ -67,22 +71,20 @@ class blended_uniforms {
         }
         counter_ += golden_increment;
         const auto round = index_of<number>(mix(index_ + counter_));
-        number first = number(0), second = number(0);
-        for (const auto& grid : vertices_.grids) {
-            const auto blended = detail::blended_pair<number>(grid.vertices, [&](const auto& vertex) {
+        const auto variates = [round](const auto& seeded) {
+            return normal_pair_from_bits<number>(mix(round ^ seeded.seed));
+        };
+        const auto blended = detail::blended_pair<number>(vertices_.grids, [&](const auto& grid) {
+            return detail::blended_pair<number>(grid.vertices, [&](const auto& vertex) {
                 if constexpr (std::tuple_size_v<decltype(vertex.cells)> == 0)
-                    return normal_pair_from_bits<number>(mix(round ^ vertex.seed));
+                    return variates(vertex);
                 else
-                    return detail::blended_pair<number>(vertex.cells, [&](const auto& cell) {
-                        return normal_pair_from_bits<number>(mix(round ^ cell.seed));
-                    });
+                    return detail::blended_pair<number>(vertex.cells, variates);
             });
-            first = first + grid.variate_weight * blended.first;
-            second = second + grid.variate_weight * blended.second;
-        }
+        });
         has_second_ = true;
-        second_ = second;
-        return first;
+        second_ = blended.second;
+        return blended.first;
     }
 
     /// A new independent stream; this one goes on as if it had drawn twice, however much is drawn from the other.

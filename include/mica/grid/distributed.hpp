@@ -77,7 +77,6 @@ struct softened_variates {
         Real softness;
 
         MICA_HOST_DEVICE constexpr Real normal() { return uniforms.normal(); }
-        MICA_HOST_DEVICE constexpr Real operator()() { return uniforms(); }
     };
 };
 

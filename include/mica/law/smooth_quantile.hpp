@@ -80,14 +80,15 @@ struct whole_trials {
     Real whole;    ///< the lower one, floor N
     Real part;     ///< N - floor N
     Real exponent; ///< log P(X = 0) of floor N trials
-    Real odds;     ///< p / q
+    Real none;     ///< P(X = 0)
 };
 
 template <real_number Real>
 MICA_HOST_DEVICE constexpr whole_trials<Real> make_whole_trials(Real n, Real p) {
     // The recursion multiplies q^N by up to (N p/q)^Gates, so q^N has to underflow to zero.
     const Real whole = maximum(truncate(n), Real(1));
-    return {whole, clamp(n - whole, Real(0), Real(1)), whole * log_complement(p), p / (Real(1) - p)};
+    const Real exponent = whole * log_complement(p);
+    return {whole, clamp(n - whole, Real(0), Real(1)), exponent, mica::exp(exponent)};
 }
 
 /// What is added to S_(G-1) of floor N and of floor N + 1 trials, so that the tail beyond the gates has its sum: see above.
@@ -103,6 +104,35 @@ MICA_HOST_DEVICE constexpr pair_of<Real> last_gate(Real n, Real whole, Real part
     const Real bend = select(n > Real(gates + 1), curvature * mass, Real(0));
     return {bend - select(whole > Real(gates), twelfth * following, Real(0)),
             bend - select(whole >= Real(gates), twelfth * following_next, Real(0))};
+}
+
+/// The expected number of gates that are passed, between those of floor N and of floor N + 1 trials. `above` is S_0 of floor
+/// N trials less what is to be taken off every S_k; step({S_k, S_k of one more}, {pmf_(k+1), pmf_(k+1) of one more}) gives
+/// what gate k contributes to each.
+template <int Gates, real_number Real, class Step>
+MICA_HOST_DEVICE constexpr pair_of<Real> passed_gates(Real n, Real p, const whole_trials<Real>& trials, Real above,
+                                                      Step&& step) {
+    using Scalar = scalar_of<Real>;
+    const Real q = Real(1) - p, odds = p / q;
+    Real mass = trials.none; // pmf_k of floor N trials
+    pair_of<Real> passed{Real(0), Real(0)};
+    MICA_UNROLL
+    for (int gate = 0; gate < Gates; ++gate) {
+        const auto k = static_cast<Scalar>(gate);
+        const Real following = mass * (maximum(trials.whole - Real(k), Real(0)) * odds * Real(1 / (k + 1)));
+        const Real following_next = q * following + p * mass;
+        pair_of<Real> centre{above, above + p * mass};
+        if (gate == Gates - 1) {
+            const auto last = last_gate<Gates>(n, trials.whole, trials.part, p, mass, following, following_next);
+            centre = {centre.first + last.first, centre.second + last.second};
+        }
+        const pair_of<Real> steps = step(centre, pair_of<Real>{following, following_next});
+        passed = {passed.first + steps.first, passed.second + steps.second};
+        above = above - following;
+        mass = following;
+    }
+    // S_k that should be 0 (k >= whole) has the rounding of the subtractions.
+    return {minimum(passed.first, trials.whole), passed.second};
 }
 
 /// N <= 1: the rarer outcome, nothing, the other, with probabilities N p, 1 - N, N q.
@@ -131,35 +161,19 @@ struct smooth_quantile_binomial {
         const auto [n, success_probability] = detail::in_domain(trials, probability);
         const auto side = detail::make_rarer_side(success_probability, xi());
         const Real p = side.probability;
-        const Real q = Real(1) - p;
-        const auto [whole, part, exponent, odds] = detail::make_whole_trials(n, p);
-        Real mass = mica::exp(exponent);                                  // pmf_k of `whole` trials
-        Real mass_next = q * mass;                                        // and of one more
-        Real above = detail::any_less_tail(side.variate, exponent, mass); // S_k - xi
-        auto steepness = detail::twice_reciprocals(mass, mass_next);
-        Real at_whole = Real(0), at_next = Real(0);
-        MICA_UNROLL
-        for (int gate = 0; gate < Gates; ++gate) {
-            const auto k = static_cast<Scalar>(gate);
-            const Real following = mass * (maximum(whole - Real(k), Real(0)) * odds * Real(1 / (k + 1)));
-            const Real following_next = q * following + p * mass;
-            const auto steepness_following = detail::twice_reciprocals(following, following_next);
-            Real centre = above;
-            Real centre_next = above + p * mass;
-            if (gate == Gates - 1) {
-                const auto last = detail::last_gate<Gates>(n, whole, part, p, mass, following, following_next);
-                centre = centre + last.first;
-                centre_next = centre_next + last.second;
-            }
-            at_whole = at_whole + detail::ramp(centre * (steepness.first + steepness_following.first));
-            at_next = at_next + detail::ramp(centre_next * (steepness.second + steepness_following.second));
-            above = above - following;
-            mass = following;
-            mass_next = following_next;
-            steepness = steepness_following;
-        }
-        // S_k that should be 0 (k >= whole) has the rounding of the subtractions.
-        at_whole = minimum(at_whole, whole);
+        const auto whole_trials = detail::make_whole_trials(n, p);
+        const Real part = whole_trials.part;
+        auto steepness = detail::twice_reciprocals(whole_trials.none, (Real(1) - p) * whole_trials.none);
+        const auto [at_whole, at_next] = detail::passed_gates<Gates>(
+            n, p, whole_trials,
+            detail::any_less_tail(side.variate, whole_trials.exponent, whole_trials.none), // S_0 - xi
+            [&](detail::pair_of<Real> centre, detail::pair_of<Real> following) {
+                const auto next = detail::twice_reciprocals(following.first, following.second);
+                const detail::pair_of<Real> steps{detail::ramp(centre.first * (steepness.first + next.first)),
+                                                  detail::ramp(centre.second * (steepness.second + next.second))};
+                steepness = next;
+                return steps;
+            });
         const Real gated = at_whole + part * (at_next - at_whole);
 
         // Between G and G + 1 only the larger neighbour has a tail.

@@ -39,30 +39,18 @@ MICA_HOST_DEVICE constexpr counts<Real> softened_quantile(Real trials, Real prob
     const Real c = mica::sqrt(Real(1) - s * s);
     const Real x = c * select(failures_rarer, -z, z);
     const Real one_over_s = Real(1) / s;
-    const auto step = [&](Real tail) { // Phi((x + Phi^-1(tail)) / s), 0 for a tail of 0
+    const auto step = [&](Real tail, Real variate) { // Phi((variate + Phi^-1(tail)) / s), 0 for a tail of 0
         const auto positive = tail > Real(1e-9F);
         const Real inside = clamp(tail, Real(1e-9F), Real(1 - std::numeric_limits<Scalar>::epsilon() / 2));
-        return select(positive, normal_cdf((x + normal_quantile(inside)) * one_over_s), Real(0));
+        return select(positive, normal_cdf((variate + normal_quantile(inside)) * one_over_s), Real(0));
     };
 
-    const auto [whole, part, exponent, odds] = make_whole_trials(n, p);
-    Real mass = mica::exp(exponent);     // pmf_k of `whole` trials
-    Real above = -mica::expm1(exponent); // S_k of `whole` trials
-    Real at_whole = Real(0), at_next = Real(0);
-    MICA_UNROLL
-    for (int gate = 0; gate < Gates; ++gate) {
-        const auto k = static_cast<Scalar>(gate);
-        const Real following = mass * (maximum(whole - Real(k), Real(0)) * odds * Real(1 / (k + 1)));
-        const Real following_next = q * following + p * mass;
-        const auto last = gate == Gates - 1 ? last_gate<Gates>(n, whole, part, p, mass, following, following_next)
-                                            : pair_of<Real>{Real(0), Real(0)};
-        at_whole = at_whole + step(above + last.first);
-        at_next = at_next + step(above + p * mass + last.second);
-        above = above - following;
-        mass = following;
-    }
-    at_whole = minimum(at_whole, whole);
-    const Real gated = at_whole + part * (at_next - at_whole);
+    const auto whole_trials = make_whole_trials(n, p);
+    const auto [at_whole, at_next] = passed_gates<Gates>(
+        n, p, whole_trials, -mica::expm1(whole_trials.exponent), [&](pair_of<Real> tail, pair_of<Real>) {
+            return pair_of<Real>{step(tail.first, x), step(tail.second, x)};
+        });
+    const Real gated = at_whole + whole_trials.part * (at_next - at_whole);
 
     const Real m = maximum(n, Real(gates + 1));
     const Real w = p * q, d = q - p;
@@ -84,12 +72,8 @@ MICA_HOST_DEVICE constexpr counts<Real> softened_quantile(Real trials, Real prob
 
     const auto below_one = n < Real(1);
     const Real lone = minimum(n, Real(1));
-    const auto failure_step = [&](Real tail) {
-        const Real inside = clamp(tail, Real(1e-9F), Real(1 - std::numeric_limits<Scalar>::epsilon() / 2));
-        return normal_cdf((normal_quantile(inside) - x) * one_over_s);
-    };
-    const Real rarer = select(below_one, step(lone * p), drawn);
-    const Real others = select(below_one, select(lone > Real(0), failure_step(lone * q), Real(0)), n - drawn);
+    const Real rarer = select(below_one, step(lone * p, x), drawn);
+    const Real others = select(below_one, step(lone * q, -x), n - drawn);
     return {select(failures_rarer, others, rarer), select(failures_rarer, rarer, others)};
 }
 

@@ -19,16 +19,10 @@ namespace detail {
 
 inline constexpr double pi = 3.14159265358979323846;
 
-/// Scalar functions in every lane of a pack.
-template <class Function, real_number Real>
-MICA_HOST_DEVICE Real each_lane(const Function& function, Real x) {
-    for (int i = 0; i < lanes_of<Real>; ++i) set_lane(x, i, function(lane(x, i)));
-    return x;
-}
-
-template <class Function, real_number Real>
-MICA_HOST_DEVICE Real each_lane(const Function& function, Real x, Real y) {
-    for (int i = 0; i < lanes_of<Real>; ++i) set_lane(x, i, function(lane(x, i), lane(y, i)));
+/// A scalar function in every lane of its arguments.
+template <class Function, real_number Real, std::same_as<Real>... More>
+MICA_HOST_DEVICE Real each_lane(const Function& function, Real x, More... more) {
+    for (int i = 0; i < lanes_of<Real>; ++i) set_lane(x, i, function(lane(x, i), lane(more, i)...));
     return x;
 }
 
