@@ -185,8 +185,8 @@ direction random_direction(uniform_source& uniform) {
 }
 
 template <class Law = exact_binomial>
-mica::glint_radiance shaded(const mica::shading_point& point, const mica::glint_material& material,
-                            const environment_of_four& environment, std::uint32_t seed) {
+mica::glint_radiance<float> shaded(const mica::shading_point<float>& point, const mica::glint_material& material,
+                                   const environment_of_four& environment, std::uint32_t seed) {
     return mica::shade<Law>(point, material, environment, table(), seed);
 }
 
@@ -200,8 +200,8 @@ TEST(Shade, DefinedForRandomPoints) {
     uniform_source uniform;
     for (std::uint32_t i = 0; i < 20000; ++i) {
         const auto where = places();
-        const mica::shading_point point{random_direction(uniform), random_direction(uniform), where.uv,
-                                        where.derivatives};
+        const mica::shading_point<float> point{random_direction(uniform), random_direction(uniform), where.uv,
+                                               where.derivatives};
         mica::glint_material material;
         material.roughness = uniform();
         material.log_density = 40 * uniform();
@@ -229,13 +229,13 @@ TEST(Shade, DefinedForDegeneratePoints) {
     const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
     const mica::uv_derivatives<float> ordinary{1e-3F, 0, 0, 1e-3F}, huge{1e30F, 0, 0, 1e30F};
     const direction up{0, 0, 1}, undefined{nan, 0, 1}, grazing{1, 0, 1e-7F};
-    for (const mica::shading_point& point : {mica::shading_point{up, undefined, {0, 0}, ordinary},
-                                             {undefined, up, {0, 0}, ordinary},
-                                             {up, grazing, {0, 0}, ordinary},
-                                             {up, up, {nan, nan}, ordinary},
-                                             {up, up, {infinity, -infinity}, ordinary},
-                                             {up, up, {1e30F, -1e30F}, ordinary},
-                                             {up, up, {0, 0}, huge}})
+    for (const mica::shading_point<float>& point : {mica::shading_point<float>{up, undefined, {0, 0}, ordinary},
+                                                    {undefined, up, {0, 0}, ordinary},
+                                                    {up, grazing, {0, 0}, ordinary},
+                                                    {up, up, {nan, nan}, ordinary},
+                                                    {up, up, {infinity, -infinity}, ordinary},
+                                                    {up, up, {1e30F, -1e30F}, ordinary},
+                                                    {up, up, {0, 0}, huge}})
         for (const float roughness : {0.F, 1e-6F, 0.1F, 1.F})
             for (const float log_density : {-100.F, 0.F, 13.F, 100.F}) {
                 mica::glint_material material;
@@ -251,7 +251,7 @@ TEST(Shade, SameSeedSamePicture) {
     const direction up{0, 0.6F, 0.8F};
     int different = 0;
     for (std::uint32_t seed = 0; seed < 200; ++seed) {
-        const mica::shading_point point{up, up, {0.3F, 0.7F}, {1e-3F, 0, 0, 1e-3F}};
+        const mica::shading_point<float> point{up, up, {0.3F, 0.7F}, {1e-3F, 0, 0, 1e-3F}};
         const auto one = shaded(point, {}, environment, seed);
         ASSERT_EQ(one.glint.g, shaded(point, {}, environment, seed).glint.g);
         ASSERT_EQ(one.smooth.g, shaded(point, {}, environment, seed + 1).smooth.g);
@@ -275,7 +275,7 @@ patch_statistics patch(const environment_of_four& environment, float log_density
     constexpr int size = 48;
     for (int y = 0; y < size; ++y)
         for (int x = 0; x < size; ++x) {
-            const mica::shading_point point{
+            const mica::shading_point<float> point{
                 normal, wo, {static_cast<float>(x) / 512, static_cast<float>(y) / 512}, {1.F / 512, 0, 0, 1.F / 512}};
             const auto radiance = shaded(point, material, environment, 3);
             const double ratio = static_cast<double>(radiance.glint.g) / static_cast<double>(radiance.smooth.g);

@@ -54,7 +54,7 @@ std::array<furnace_row, 2> furnace_rows(double facets, double roughness, double 
     const auto alpha = static_cast<float>(roughness);
     const mica::prefiltered_environment<K> environment(map, mica::environment_levels<K>(map), {&alpha, 1});
     const scene seen(shape::sphere, size, size);
-    std::vector<mica::shading_point> points;
+    std::vector<mica::shading_point<float>> points;
     double area = 0;
     for (std::size_t i = 0; i < size * size; ++i)
         if (const auto point = seen.surface(i % size, i / size)) {

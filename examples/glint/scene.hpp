@@ -34,7 +34,7 @@ class scene {
 
     /// The surface seen through the middle of a pixel, with the derivatives of its uv by the pixel, analytic: the ray
     /// moves on the tangent plane, dP/dx = t (dD - D (n.dD) / (n.D)) for the ray direction D (Igehy 1999).
-    std::optional<mica::shading_point> surface(std::size_t x, std::size_t y) const {
+    std::optional<mica::shading_point<float>> surface(std::size_t x, std::size_t y) const {
         using vector = mica::vector3<float>;
         const float right = step_ * (static_cast<float>(x) + 0.5F - static_cast<float>(width_) / 2);
         const float above = step_ * (static_cast<float>(height_) / 2 - static_cast<float>(y) - 0.5F);
@@ -57,7 +57,7 @@ class scene {
         const auto moved = [&](vector ray_derivative) {
             return t * (ray_derivative - (dot(normal, ray_derivative) / dot(normal, ray)) * ray);
         };
-        mica::shading_point result{normal, mica::normalized(-1 * ray), {}, {}};
+        mica::shading_point<float> result{normal, mica::normalized(-1 * ray), {}, {}};
         result.uv = uv(point);
         const auto by_x = uv_change(point, moved(ray_dx)), by_y = uv_change(point, moved(ray_dy));
         result.derivatives = {by_x.u, by_x.v, by_y.u, by_y.v};

@@ -45,4 +45,5 @@
 #include "shade/environment_glints.hpp"
 #include "shade/microfacet.hpp"
 #include "shade/prefilter.hpp"
+#include "shade/shading_point.hpp"
 #include "shade/vector.hpp"

@@ -13,6 +13,7 @@
 #include "../grid/distributed.hpp"
 #include "microfacet.hpp"
 #include "prefilter.hpp"
+#include "shading_point.hpp"
 
 namespace mica {
 
@@ -53,23 +54,11 @@ struct glint_material {
     float footprint_scale = default_footprint_scale; ///< size of a glint, in pixels
 };
 
-/// What the kernel needs to know of a pixel.
-struct shading_point {
-    vector3<float> normal, wo; ///< of length 1, both away from the surface
-    uv_point<float> uv;
-    uv_derivatives<float> derivatives; ///< uv per pixel
-};
-
-/// Radiance towards the eye: with the facets counted, and the smooth limit of infinitely many.
-struct glint_radiance {
-    rgb<float> glint, smooth;
-};
-
 /// The radiance of a pixel. `seed` picks the realisation.
 template <class Law, class Interpolation = blended_variates, std::size_t K>
-glint_radiance shade(const shading_point& point, const glint_material& material,
-                     const prefiltered_environment<K>& environment, const microfacet_table& table, std::uint32_t seed,
-                     Interpolation interpolation = {}) {
+glint_radiance<float> shade(const shading_point<float>& point, const glint_material& material,
+                            const prefiltered_environment<K>& environment, const microfacet_table& table,
+                            std::uint32_t seed, Interpolation interpolation = {}) {
     const float n_dot_v = dot(point.normal, point.wo);
     if (!(n_dot_v > 0)) return {{0, 0, 0}, {0, 0, 0}};
     const auto lobe = environment(reflected(point.wo, point.normal), material.roughness);

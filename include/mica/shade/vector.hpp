@@ -1,14 +1,12 @@
 // mica/shade/vector.hpp: directions and colours, no more than shading needs.
 #pragma once
 
-#include <cmath>
-
-#include "../numeric/number.hpp"
+#include "../numeric/elementary.hpp"
 
 namespace mica {
 
 /// A vector of three, in space or in directions (then of length 1).
-template <scalar_number Real>
+template <real_number Real>
 struct vector3 {
     Real x, y, z;
 
@@ -21,30 +19,30 @@ struct vector3 {
     MICA_HOST_DEVICE friend constexpr vector3 operator*(Real s, vector3 a) { return {s * a.x, s * a.y, s * a.z}; }
 };
 
-template <scalar_number Real>
+template <real_number Real>
 MICA_HOST_DEVICE constexpr Real dot(vector3<Real> a, vector3<Real> b) {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-template <scalar_number Real>
+template <real_number Real>
 MICA_HOST_DEVICE constexpr vector3<Real> cross(vector3<Real> a, vector3<Real> b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
 /// a / |a|; a must not be zero.
-template <scalar_number Real>
-MICA_HOST_DEVICE vector3<Real> normalized(vector3<Real> a) {
-    return (1 / std::sqrt(dot(a, a))) * a;
+template <real_number Real>
+MICA_HOST_DEVICE constexpr vector3<Real> normalized(vector3<Real> a) {
+    return (Real(1) / mica::sqrt(dot(a, a))) * a;
 }
 
 /// The direction into which a mirror with the given normal reflects what comes from `w`; both point away from it.
-template <scalar_number Real>
+template <real_number Real>
 MICA_HOST_DEVICE constexpr vector3<Real> reflected(vector3<Real> w, vector3<Real> normal) {
-    return 2 * dot(w, normal) * normal - w;
+    return Real(2) * dot(w, normal) * normal - w;
 }
 
 /// Linear radiance or reflectance in three bands, Rec. 709 primaries.
-template <scalar_number Real>
+template <real_number Real>
 struct rgb {
     Real r, g, b;
 
@@ -54,7 +52,7 @@ struct rgb {
 };
 
 /// Relative luminance (Rec. 709).
-template <scalar_number Real>
+template <real_number Real>
 MICA_HOST_DEVICE constexpr Real luminance(rgb<Real> c) {
     return Real(0.2126) * c.r + Real(0.7152) * c.g + Real(0.0722) * c.b;
 }
