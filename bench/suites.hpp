@@ -26,5 +26,6 @@ inline const std::vector<std::pair<std::string, streams::binomial>>& curve_point
 void register_laws();
 void register_peers();
 void register_grids();
+void register_shade();
 
 } // namespace suites

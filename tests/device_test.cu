@@ -28,12 +28,14 @@ template __global__ void sample_binomials<mica::smooth_quantile_binomial<4>>(con
                                                                              unsigned);
 
 __global__ void count_glints(const mica::uv_derivatives<float>* derivatives, const mica::uv_point<float>* uv,
-                             std::array<float, 4> levels, std::array<float, 4> indicators, float* ratio,
-                             unsigned count) {
+                             std::array<mica::light_class<float>, 4> classes, float* radiance, unsigned count) {
     const unsigned i = blockIdx.x * blockDim.x + threadIdx.x;
     if (i >= count) return;
-    const auto pixel = mica::make_footprint(derivatives[i]);
-    const float trials = 1e6F * pixel.area;
-    const auto vertices = mica::make_grid_vertices(pixel, uv[i], trials, 1U);
-    ratio[i] = mica::glint_ratio<mica::dual_gated_binomial>(vertices, trials, levels, indicators, 0.9F);
+    mica::shading_point<float> point{{0, 0, 1}, {0, 0, 1}, uv[i], derivatives[i], {1, 0, 0}, {0, 0, 0}};
+    const mica::glint_kernel<mica::dual_gated_binomial> plain{};
+    const mica::glint_kernel<mica::quantile_binomial<4>, mica::blended_variates,
+                             mica::effects<mica::angular_grid, mica::varied_density, mica::tinted_glints>>
+        adorned{};
+    radiance[i] = mica::luminance(plain(point, {}, classes, {0, 0, 1}, 1U).glint) +
+                  mica::luminance(adorned(point, {}, classes, {0, 0, 1}, 1U).glint);
 }

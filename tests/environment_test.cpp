@@ -385,10 +385,10 @@ TEST(Prefilter, BlocksAgreeWithThePlainSum) {
     const auto map = hard_map(256, 128);
     std::vector<std::array<float, 3>> values;
     for (const auto& texel : map.image().texels) values.push_back({texel.r, texel.g, texel.b});
-    const mica::detail::texel_pyramid<3> pyramid(256, 128, values);
+    const mica::detail::texel_pyramid<3, 3> pyramid(256, 128, values);
     for (const float roughness : filter_roughnesses) {
         const auto error = error_of(map, static_cast<double>(roughness), 60, [&](direction r) {
-            const auto value = pyramid.filtered(r, roughness);
+            const auto value = pyramid.filtered(r, roughness, 0.3F);
             return mica::luminance(colour{value[0], value[1], value[2]});
         });
         std::printf("blocks, roughness %.2f: largest error %.2g relative, %.2g of the peak\n",

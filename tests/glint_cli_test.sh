@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# The program as its users call it:  glint_cli_test.sh GLINT errors|determinism|environments|furnace
+# The program as its users call it:  glint_cli_test.sh GLINT errors|determinism|environments|comparison|furnace|lights|costs
 set -uo pipefail
 glint=$1
 part=$2
+scenes=$(cd "$(dirname "$0")/../examples/scenes" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
@@ -88,6 +89,37 @@ errors() {
     expect_error 'softness' render --softness nan $small
     expect_error 'needs --law quantile' render --softness 0.2 --law exact $small
     expect_error 'is for --interpolate variates' render --softness 0.2 --interpolate counts $small
+    expect_error "unknown classes 'taste'" render --classes taste $small
+    expect_error 'occluder 1,2 is not x,y,z' render --occluder 1,2 $small
+    expect_error 'occluder is not a direction' render --occluder 0,0,0 $small
+    expect_error 'not compiled in for published' render --occluder 1,0,0 --classes published $small
+    expect_error 'lights 0 is not in' render --light sun --lights 0 $small
+    expect_error 'an environment is one light' render --lights 2 $small
+    expect_error 'effects are not compiled in for law' render --tint 0.5 --law exact $small
+    expect_error 'one_grid is for counts' render --one-grid $small
+    expect_error 'counts are not compiled in for law' render --interpolate counts --law exact $small
+    expect_error 'tint 3 is not in' render --tint 3 $small
+    expect_error 'knows one light' compare --light wdh20 -o x.png
+    expect_error 'facets is not in' compare --light sun --facets 0 -o x.png
+    expect_error 'size is not in' costs --size 1
+    scene_error() { # SAYS JSON
+        printf '%s' "$2" >scene.json
+        expect_error "$1" render --scene scene.json -o x.png
+    }
+    expect_error 'missing.json cannot be read' render --scene missing.json -o x.png
+    scene_error 'scene.json: .*parse error' '{"size": [8, 8'
+    scene_error "unknown field 'ligths'" '{"ligths": []}'
+    scene_error "scene.lights\[0\] has an unknown field 'colour'" '{"lights": [{"type": "sun", "colour": [1, 1, 1]}]}'
+    scene_error 'scene.lights\[0\].radiance is not an array of 3 numbers' '{"lights": [{"type": "sun", "radiance": [1, 1]}]}'
+    scene_error 'scene.seed is not a whole number' '{"seed": -1}'
+    scene_error 'scene.surfaces\[1\].shape is not a string' '{"surfaces": [{}, {"shape": 4}]}'
+    scene_error 'needs a light' '{"lights": []}'
+    scene_error 'needs a surface' '{"surfaces": []}'
+    scene_error "unknown light 'moon'" '{"lights": [{"type": "moon"}]}'
+    scene_error 'at most one environment' '{"size": [8, 8], "lights": [{}, {}]}'
+    scene_error 'classes of light are not compiled in' '{"lights": [{"levels": 8}, {"type": "sun"}]}'
+    expect_error 'is for scenes without a file' render --scene scene.json --levels 4 -o x.png
+    rm scene.json
     expect_error "unknown mode 'guess'" compare --mode guess -o x.png
     expect_error "unknown law 'gaussian'" compare --law gaussian -o x.png
     expect_error 'trials' compare --trials 1e9 -o x.png
@@ -161,6 +193,38 @@ comparison() {
         END { exit failed }' rows.json || fail "rows that miss what is demanded"
     "$glint" strips -o strips.png >/dev/null || fail "strips"
     [ "$(head -c 4 strips.png | tail -c 3)" = PNG ] || fail "no strips"
+}
+
+# Every light renders, the same twice, and a scene file says the same as the options do.
+lights() {
+    for light in environment wdh20 directional sun area disk; do
+        for run in one two; do
+            "$glint" render --light $light --size 64x36 --json -o $run.png >$run.json || fail "$light"
+        done
+        cmp one.png two.png || fail "$light: the same frame twice is not the same"
+        grep -q '"non_finite_pixels": 0,' one.json || fail "$light: $(cat one.json)"
+    done
+    "$glint" render --light sun --lights 5 --size 64x36 --json -o five.png >five.json || fail "five suns"
+    grep -q '"binomials_per_pixel": 5,' five.json || fail "five suns: $(cat five.json)"
+    "$glint" render --levels 6 --roughness 0.25 --density 12 --tint 0.3 --size 64x36 -o options.png >/dev/null || fail "options"
+    printf '%s' '{"size": [64, 36], "surfaces": [{"roughness": 0.25, "log_density": 12}],
+                  "lights": [{"levels": 6}], "effects": {"tint": 0.3}}' >scene.json
+    "$glint" render --scene scene.json -o scene.png >/dev/null || fail "scene"
+    cmp options.png scene.png || fail "the scene file gives another picture than the options"
+    for scene in "$scenes"/*.json; do
+        sed 's/"size": \[[^]]*\]/"size": [64, 36]/' "$scene" >small.json
+        "$glint" render --scene small.json --json -o scene.png >scene.json.out || fail "$scene"
+        grep -q '"non_finite_pixels": 0,' scene.json.out || fail "$scene: $(cat scene.json.out)"
+    done
+}
+
+costs() {
+    "$glint" costs --size 8 --repetitions 1 --no-callgrind --json >rows.json || fail "costs"
+    for row in 'environment, 4 classes, smooth:0' 'environment, 4 classes:3' 'environment, 8 classes:7' '  counts:36' \
+        'directional:1' '  counts, angular_grid:48' '8 suns, one multinomial:8'; do
+        grep -q "\"effects\": \"${row%:*}\".*\"binomials_per_pixel\": ${row#*:}," rows.json ||
+            fail "not ${row#*:} binomials: $(grep "\"${row%:*}\"" rows.json)"
+    done
 }
 
 furnace() {

@@ -18,10 +18,8 @@
 namespace {
 
 using mica::exact_binomial;
-using mica::glint_ratio;
 using colour = mica::rgb<float>;
 using direction = mica::vector3<float>;
-using vertices = mica::grid_vertices<float>;
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -54,8 +52,22 @@ class random_places {
     std::uniform_real_distribution<double> unit_{0, 1};
 };
 
-vertices vertices_at(const place& where, float trials, std::uint32_t seed) {
-    return mica::make_grid_vertices(mica::make_footprint(where.derivatives), where.uv, trials, seed);
+/// Counted over smooth radiance of a pixel under an environment of grey levels, of which its lobe shows the given parts.
+template <class Law, std::size_t K>
+float glint_ratio(const place& where, float trials, const std::array<float, K>& levels,
+                  const std::array<float, K>& indicators, float visible, std::uint32_t seed) {
+    std::array<mica::light_class<float>, K> classes;
+    float rest = 1;
+    for (std::size_t k = K; k-- > 0;) {
+        const float radiance = levels[k] * indicators[k];
+        classes[k] = {{radiance, radiance, radiance}, k > 0 ? visible * indicators[k] : rest};
+        rest -= classes[k].probability;
+    }
+    const mica::shading_point<float> point{{0, 0, 1}, {0, 0, 1}, where.uv, where.derivatives};
+    mica::glint_material material;
+    material.log_density = std::log(trials / mica::make_footprint(where.derivatives).area);
+    const auto radiance = mica::glint_kernel<Law>{}(point, material, classes, {}, seed);
+    return radiance.smooth.g > 0 ? radiance.glint.g / radiance.smooth.g : radiance.glint.g == 0 ? 1.F : -1.F;
 }
 
 // --- the ratio --------------------------------------------------------------------------------------------------
@@ -66,8 +78,7 @@ statistics::running_moments ratios(const std::array<float, K>& levels, const std
     random_places random(1);
     statistics::running_moments sample;
     for (std::uint32_t seed = 0; seed < seeds; ++seed)
-        sample.add(static_cast<double>(
-            glint_ratio<Law>(vertices_at(random(), trials, seed), trials, levels, indicators, visible)));
+        sample.add(static_cast<double>(glint_ratio<Law>(random(), trials, levels, indicators, visible, seed)));
     return sample;
 }
 
@@ -116,24 +127,23 @@ TEST(GlintRatio, WrongMeanWouldBeSeen) {
 TEST(GlintRatio, ScaleOfTheLevelsDoesNotMatter) {
     random_places random(2);
     for (std::uint32_t seed = 0; seed < 500; ++seed) {
-        const auto pixel = vertices_at(random(), 20, seed);
+        const auto pixel = random();
         const std::array<float, 3> w{0.5F, 0.3F, 0.2F};
-        const float one = glint_ratio<exact_binomial>(pixel, 20.F, std::array{0.F, 1.F, 4.F}, w, 0.7F);
-        EXPECT_EQ(one, glint_ratio<exact_binomial>(pixel, 20.F, std::array{0.F, 0x1p90F, 0x1p92F}, w, 0.7F));
-        EXPECT_EQ(one, glint_ratio<exact_binomial>(pixel, 20.F, std::array{0.F, 0x1p-90F, 0x1p-88F}, w, 0.7F));
+        const float one = glint_ratio<exact_binomial>(pixel, 20.F, std::array{0.F, 1.F, 4.F}, w, 0.7F, seed);
+        EXPECT_EQ(one, glint_ratio<exact_binomial>(pixel, 20.F, std::array{0.F, 0x1p90F, 0x1p92F}, w, 0.7F, seed));
+        EXPECT_EQ(one, glint_ratio<exact_binomial>(pixel, 20.F, std::array{0.F, 0x1p-90F, 0x1p-88F}, w, 0.7F, seed));
     }
 }
 
 TEST(GlintRatio, WithoutFacetsOrLightIsOne) {
-    const auto pixel = vertices_at(random_places(3)(), 10, 1);
+    const auto pixel = random_places(3)();
     const std::array<float, 3> levels{0, 1, 4}, w{0.5F, 0.3F, 0.2F};
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_EQ(glint_ratio<exact_binomial>(pixel, 0.F, levels, w, 0.7F), 1.F);
-    EXPECT_EQ(glint_ratio<exact_binomial>(pixel, nan, levels, w, 0.7F), 1.F);
-    EXPECT_EQ(glint_ratio<exact_binomial>(pixel, 10.F, levels, w, 0.F), 1.F); // nothing seen
-    EXPECT_EQ(glint_ratio<exact_binomial>(pixel, 10.F, levels, w, nan), 1.F);
-    EXPECT_EQ(glint_ratio<exact_binomial>(pixel, 10.F, std::array{0.F, 0.F, 0.F}, w, 0.7F), 1.F);      // black
-    EXPECT_EQ(glint_ratio<exact_binomial>(pixel, 10.F, levels, std::array{1.F, 0.F, 0.F}, 0.7F), 1.F); // dark lobe
+    EXPECT_EQ(glint_ratio<exact_binomial>(pixel, 0.F, levels, w, 0.7F, 1), 1.F);
+    EXPECT_EQ(glint_ratio<exact_binomial>(pixel, 10.F, levels, w, 0.F, 1), 1.F); // nothing seen
+    EXPECT_EQ(glint_ratio<exact_binomial>(pixel, 10.F, levels, w, nan, 1), 1.F);
+    EXPECT_EQ(glint_ratio<exact_binomial>(pixel, 10.F, std::array{0.F, 0.F, 0.F}, w, 0.7F, 1), 1.F);      // black
+    EXPECT_EQ(glint_ratio<exact_binomial>(pixel, 10.F, levels, std::array{1.F, 0.F, 0.F}, 0.7F, 1), 1.F); // dark lobe
 }
 
 TEST(GlintRatio, FiniteForTinyAndHugeArguments) {
@@ -142,9 +152,9 @@ TEST(GlintRatio, FiniteForTinyAndHugeArguments) {
         for (const float visible : {1e-30F, 1e-10F, 1.F})
             for (std::uint32_t seed = 0; seed < 100; ++seed) {
                 const std::array<float, 3> levels{0, 1e-3F, 1e30F}, w{0, 0.999F, 1e-3F};
-                const auto pixel = vertices_at(random(), trials, seed);
-                const float exact = glint_ratio<exact_binomial>(pixel, trials, levels, w, visible);
-                const float gated = glint_ratio<mica::dual_gated_binomial>(pixel, trials, levels, w, visible);
+                const auto pixel = random();
+                const float exact = glint_ratio<exact_binomial>(pixel, trials, levels, w, visible, seed);
+                const float gated = glint_ratio<mica::dual_gated_binomial>(pixel, trials, levels, w, visible, seed);
                 ASSERT_TRUE(std::isfinite(exact) && exact >= 0) << trials << ' ' << visible << ' ' << exact;
                 ASSERT_TRUE(std::isfinite(gated) && gated >= 0) << trials << ' ' << visible << ' ' << gated;
             }
@@ -187,7 +197,7 @@ direction random_direction(uniform_source& uniform) {
 template <class Law = exact_binomial>
 mica::glint_radiance<float> shaded(const mica::shading_point<float>& point, const mica::glint_material& material,
                                    const environment_of_four& environment, std::uint32_t seed) {
-    return mica::shade<Law>(point, material, environment, table(), seed);
+    return mica::shade(mica::glint_kernel<Law>{}, point, material, environment, table(), seed);
 }
 
 bool defined(const colour& c) {

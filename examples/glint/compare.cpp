@@ -12,6 +12,8 @@
 #include <random>
 #include <stdexcept>
 
+#include <mica/law/exact.hpp>
+#include <mica/law/quantile.hpp>
 #include <mica/law/smooth_quantile.hpp>
 
 #include "patch.hpp"

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "render.hpp"
+
 namespace glint {
 
 /// What the command line asks of `glint compare`.
@@ -23,6 +25,15 @@ struct compare_options {
 };
 
 void compare(const compare_options& options);
+
+/// What the command line asks of `glint compare --light`.
+struct compare_light_options {
+    render_options scene; ///< its light; of its roughness and density, those below and the picture's
+    std::vector<double> roughness = {0.1, 0.3, 0.6};
+    std::vector<double> facets = {0.5, 5, 50}; ///< that flash, in a pixel
+};
+
+void compare_light(const compare_light_options& options);
 
 /// What the command line asks of `glint strips`.
 struct strips_options {

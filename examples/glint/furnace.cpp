@@ -1,13 +1,16 @@
 // The white furnace: under a constant environment the mean over realisations of glint / smooth is 1.
 //
-// A sphere is rendered with many seeds. The mean over all pixels is taken per seed; the seeds are independent, so
-// their spread gives the standard error, which neighbouring pixels, sharing glints, would not. Seeds are added until
-// the standard error is small enough, also over the grazing pixels (n.wo < 0.25), which are counted by themselves.
-// Every setting has seeds of its own.
+// Under another light, where it shines. A sphere is rendered with many seeds. The sum over all pixels is taken per seed; the
+// seeds are independent, so their spread gives the standard error, which neighbouring pixels, sharing glints, would not.
+// Seeds are added until the standard error is small enough, also over the grazing pixels (n.wo < 0.25), which are counted
+// by themselves. Every setting has seeds of its own. The facets of a setting are those that flash: a pixel has more of
+// them, where the light covers but a part of what the surface reflects.
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <string>
+
+#include <tbb/parallel_for.h>
 
 #include "render.hpp"
 
@@ -31,8 +34,14 @@ struct running_mean {
     }
 };
 
+/// What a row asks: a light, and of an environment its levels.
+struct furnace_light {
+    std::string type;
+    int levels;
+};
+
 struct furnace_row {
-    std::size_t levels;
+    furnace_light light;
     double facets_per_pixel, log_density, roughness;
     const char* pixels;
     double ratio, standard_error, wanted_error;
@@ -47,58 +56,98 @@ struct furnace_row {
 constexpr std::size_t size = 48;
 constexpr float grazing_below = 0.25F;
 
-template <class Law, std::size_t K>
-std::array<furnace_row, 2> furnace_rows(double facets, double roughness, double precision,
-                                        const mica::microfacet_table& table, std::uint32_t first_seed) {
-    const auto map = white_environment();
-    const auto alpha = static_cast<float>(roughness);
-    const mica::prefiltered_environment<K> environment(map, mica::environment_levels<K>(map), {&alpha, 1});
-    const scene seen(shape::sphere, size, size);
-    std::vector<mica::shading_point<float>> points;
-    double area = 0;
-    for (std::size_t i = 0; i < size * size; ++i)
-        if (const auto point = seen.surface(i % size, i / size)) {
-            points.push_back(*point);
-            area += static_cast<double>(mica::make_footprint(point->derivatives).area);
-        }
-    mica::glint_material material;
-    material.roughness = alpha;
-    const double log_density = std::log(facets * static_cast<double>(points.size()) / area);
-    material.log_density = static_cast<float>(log_density);
+/// A pixel of the sphere, and its brightness without glints.
+struct lit_pixel {
+    mica::shading_point<float> point;
+    double smooth;
+};
 
-    running_mean all, grazing;
+/// The pixels that the light reaches, and how many facets a pixel has at log density 0, per facet that flashes: the mean
+/// over them of N p, weighted by their radiance.
+struct lit_pixels {
+    std::vector<lit_pixel> pixels;
+    double facets_at_zero = 0, flashes_at_zero = 0;
+    double smooth = 0, grazing_smooth = 0;
+};
+
+bool grazing(const lit_pixel& pixel) { return dot(pixel.point.normal, pixel.point.wo) < grazing_below; }
+
+lit_pixels lit_by(const shader& shade, const scene& seen) {
+    lit_pixels lit;
+    double area = 0;
+    for (std::size_t i = 0; i < size * size; ++i) {
+        const auto hit = seen.surface(i % size, i / size);
+        if (!hit) continue;
+        const auto smooth = static_cast<double>(luminance(shade.smooth(hit->point, seen.surfaces()[0])));
+        if (!(smooth > 0)) continue;
+        const lit_pixel pixel{hit->point, smooth};
+        const auto footprint = static_cast<double>(mica::make_footprint(hit->point.derivatives).area);
+        area += footprint;
+        lit.flashes_at_zero +=
+            smooth * footprint * static_cast<double>(shade.flash_probability(hit->point, seen.surfaces()[0]));
+        (grazing(pixel) ? lit.grazing_smooth : lit.smooth) += smooth;
+        lit.pixels.push_back(pixel);
+    }
+    if (lit.pixels.empty()) return lit;
+    lit.smooth += lit.grazing_smooth;
+    lit.flashes_at_zero /= lit.smooth;
+    lit.facets_at_zero = area / static_cast<double>(lit.pixels.size());
+    return lit;
+}
+
+std::vector<furnace_row> furnace_rows(const furnace_light& light, double facets, double roughness,
+                                      const furnace_options& options, std::uint32_t first_seed) {
+    scene_description description;
+    auto& material = description.surfaces.front().material;
+    material.roughness = static_cast<float>(roughness);
+    description.lights.front().type = light.type;
+    description.lights.front().levels = light.levels;
+    description.lights.front().file = "white";
+    description.counting = options.counting;
+    const shader shade(description);
+    const scene seen(description.camera, description.surfaces, size, size);
+    const lit_pixels lit = lit_by(shade, seen);
+    const double log_density = std::log(facets / lit.flashes_at_zero);
+    surface_description surface = description.surfaces.front();
+    surface.material.log_density = static_cast<float>(log_density);
+
+    running_mean all, at_grazing;
     constexpr std::size_t batch = 64, most = 16384;
     // Below one facet per pixel the variance has no bound; the demand there grows with the standard error.
-    const double wanted = facets >= 1 ? precision : 3 * precision;
-    const auto precise = [&] { return all.standard_error() <= wanted && grazing.standard_error() <= wanted; };
+    const double wanted = facets >= 1 ? options.precision : 3 * options.precision;
+    const bool has_grazing = lit.grazing_smooth > 0.01 * lit.smooth;
+    const auto precise = [&] {
+        return all.standard_error() <= wanted && (!has_grazing || at_grazing.standard_error() <= wanted);
+    };
     while (all.count < most && (all.count < batch || !precise())) {
-        std::array<std::array<double, 2>, batch> means{};
+        std::array<std::array<double, 2>, batch> sums{};
         tbb::parallel_for(std::size_t{0}, batch, [&](std::size_t i) {
             const std::uint32_t seed = mica::hash(first_seed, static_cast<std::uint32_t>(all.count + i));
-            double sum = 0, grazing_sum = 0;
-            std::size_t grazing_count = 0;
-            for (const auto& point : points) {
-                const auto radiance = mica::shade<Law>(point, material, environment, table, seed);
-                const auto ratio = static_cast<double>(luminance(radiance.glint) / luminance(radiance.smooth));
-                sum += ratio;
-                if (dot(point.normal, point.wo) < grazing_below) {
-                    grazing_sum += ratio;
-                    ++grazing_count;
-                }
+            for (const auto& pixel : lit.pixels) {
+                const auto glint = static_cast<double>(luminance(shade(pixel.point, surface, seed).glint));
+                sums[i][0] += glint;
+                if (grazing(pixel)) sums[i][1] += glint;
             }
-            means[i] = {sum / static_cast<double>(points.size()), grazing_sum / static_cast<double>(grazing_count)};
         });
-        for (const auto& [mean, grazing_mean] : means) {
-            all.add(mean);
-            grazing.add(grazing_mean);
+        for (const auto& [sum, grazing_sum] : sums) {
+            all.add(sum / lit.smooth);
+            if (has_grazing) at_grazing.add(grazing_sum / lit.grazing_smooth);
         }
     }
     const auto row = [&](const char* pixels, const running_mean& measured) {
-        return furnace_row{
-            K,      facets,        log_density, roughness, pixels, measured.mean(), measured.standard_error(),
-            wanted, measured.count};
+        return furnace_row{light,
+                           facets * lit.facets_at_zero / lit.flashes_at_zero,
+                           log_density,
+                           roughness,
+                           pixels,
+                           measured.mean(),
+                           measured.standard_error(),
+                           wanted,
+                           measured.count};
     };
-    return {row("all", all), row("grazing", grazing)};
+    std::vector<furnace_row> rows{row("all", all)};
+    if (has_grazing) rows.push_back(row("grazing", at_grazing));
+    return rows;
 }
 
 } // namespace
@@ -110,43 +159,46 @@ void furnace(const furnace_options& options) {
         if (!(facets > 0 && facets <= 1e12)) throw std::invalid_argument("--facets is not in (0, 1e12]");
     if (!(options.precision > 0)) throw std::invalid_argument("--precision is not positive");
 
-    const mica::microfacet_table table;
-    progress reporter("white furnace", options.levels.size() * options.roughness.size() * options.facets.size());
+    std::vector<furnace_light> lights;
+    for (const auto& type : options.lights) {
+        if (type == "environment")
+            for (const int levels : options.levels) lights.push_back({type, levels});
+        else
+            lights.push_back({type, 2});
+    }
+    progress reporter("white furnace", lights.size() * options.roughness.size() * options.facets.size());
     std::vector<furnace_row> rows;
-    for (const int levels : options.levels)
+    for (const auto& light : lights)
         for (const double facets : options.facets)
             for (const double roughness : options.roughness) {
-                with_law(options.law, [&](auto law) {
-                    with_levels(levels, [&](auto k) {
-                        for (const auto& row : furnace_rows<decltype(law), decltype(k)::value>(
-                                 facets, roughness, options.precision, table, static_cast<std::uint32_t>(rows.size())))
-                            rows.push_back(row);
-                    });
-                });
+                for (const auto& row :
+                     furnace_rows(light, facets, roughness, options, static_cast<std::uint32_t>(rows.size())))
+                    rows.push_back(row);
                 reporter.advance();
             }
+    const std::string effects = names_of(options.counting.effects);
 
     if (options.json) {
         std::printf("{\"rows\": [");
         const char* separator = "\n";
         for (const auto& row : rows) {
-            std::printf("%s  {\"law\": \"%s\", \"levels\": %zu, \"log_density\": %.4f, \"facets_per_pixel\": %g, "
-                        "\"roughness\": %g, \"pixels\": \"%s\", \"ratio\": %.6f, \"standard_error\": %.6f, "
-                        "\"realisations\": %zu, \"passes\": %s}",
-                        separator, options.law.c_str(), row.levels, row.log_density, row.facets_per_pixel,
-                        row.roughness, row.pixels, row.ratio, row.standard_error, row.realisations,
-                        row.passes() ? "true" : "false");
+            std::printf("%s  {\"light\": \"%s\", \"law\": \"%s\", \"effects\": \"%s\", \"levels\": %d, "
+                        "\"log_density\": %.4f, \"facets_per_pixel\": %g, \"roughness\": %g, \"pixels\": \"%s\", "
+                        "\"ratio\": %.6f, \"standard_error\": %.6f, \"realisations\": %zu, \"passes\": %s}",
+                        separator, row.light.type.c_str(), options.counting.law.c_str(), effects.c_str(),
+                        row.light.levels, row.log_density, row.facets_per_pixel, row.roughness, row.pixels, row.ratio,
+                        row.standard_error, row.realisations, row.passes() ? "true" : "false");
             separator = ",\n";
         }
         std::printf("\n]}\n");
         return;
     }
-    std::printf("white furnace, law %s: mean of glint / smooth\n\n"
-                "levels  facets/pixel  log density  roughness  pixels    ratio   std. error\n",
-                options.law.c_str());
+    std::printf("white furnace, law %s, effects %s: mean of glint / smooth\n\n"
+                "light        levels  facets/pixel  log density  roughness  pixels    ratio   std. error\n",
+                options.counting.law.c_str(), effects.c_str());
     for (const auto& row : rows)
-        std::printf("%6zu  %12g  %11.2f  %9g  %-7s  %7.4f  %9.4f  %s\n", row.levels, row.facets_per_pixel,
-                    row.log_density, row.roughness, row.pixels, row.ratio, row.standard_error,
+        std::printf("%-12s %6d  %12g  %11.2f  %9g  %-7s  %7.4f  %9.4f  %s\n", row.light.type.c_str(), row.light.levels,
+                    row.facets_per_pixel, row.log_density, row.roughness, row.pixels, row.ratio, row.standard_error,
                     row.passes() ? "" : "beyond max(0.005, 4 std. errors), or not known well enough");
 }
 

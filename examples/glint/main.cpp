@@ -10,6 +10,8 @@
 #include <tbb/global_control.h>
 
 #include "compare.hpp"
+#include "costs.hpp"
+#include "figures.hpp"
 #include "render.hpp"
 
 namespace {
@@ -19,6 +21,38 @@ std::string one_line(std::string text) {
     while (!text.empty() && text.back() == '\n') text.pop_back();
     std::replace(text.begin(), text.end(), '\n', ' ');
     return text;
+}
+
+/// The options that say how facets are counted.
+void add_counting(CLI::App* command, glint::counting_description& counting) {
+    command->add_option("--law", counting.law, std::string("binomial law: ") + glint::known_laws)
+        ->capture_default_str();
+    command->add_option("--interpolate", counting.interpolate, "what a pixel blends: variates or counts")
+        ->capture_default_str();
+    command->add_option("--softness", counting.softness, "of glints' edges, in [0, 1); for variates")
+        ->capture_default_str();
+    auto& effects = counting.effects;
+    command->add_option("--angular-grid", effects.angular_grid,
+                        "glints live and die with the half vector: facet roughness, e.g. 0.02");
+    command->add_option("--varied-density", effects.varied_density,
+                        "density from place to place: deviation of its logarithm, in [0, 1]");
+    command->add_option("--tint", effects.tint, "a colour for every glint: deviation of a band's logarithm, in [0, 1]");
+    command->add_option("--smooth-where-dense", effects.smooth_tolerance,
+                        "smooth where glints deviate by less, relative");
+    command->add_flag("--one-grid", effects.one_grid, "one of the four grids of --interpolate counts, at random");
+}
+
+/// The options that say what shines.
+void add_light(CLI::App* command, glint::render_options& scene) {
+    command->add_option("--light", scene.light, "environment, wdh20, directional, sun, area or disk")
+        ->capture_default_str();
+    command->add_option("--env", scene.environment, "environment map, Radiance .hdr (none: a procedural one)");
+    command->add_option("--levels", scene.levels, "classes K of the environment's light")->capture_default_str();
+    command
+        ->add_option("--classes", scene.classes,
+                     "what parts the environment's light: brightness, colour, or published: as in KK25")
+        ->capture_default_str();
+    command->add_option("--occluder", scene.occluder, "x,y,z: a wall; nothing shines from directions on its side");
 }
 
 int run(int argc, char** argv) {
@@ -34,21 +68,19 @@ int run(int argc, char** argv) {
 
     glint::render_options render;
     CLI::App* const render_command = app.add_subcommand("render", "render a glittering sphere or plane to a PNG");
-    render_command->add_option("--env", render.environment, "environment map, Radiance .hdr (none: a procedural one)");
-    render_command->add_option("--light", render.light, "environment")->capture_default_str();
+    render_command->add_option(
+        "--scene", render.scene_file,
+        "scene file, JSON: lights, surfaces, effects (docs/effects.md); instead of all options but "
+        "--output and --json");
+    add_light(render_command, render);
+    render_command->add_option("--lights", render.lights, "so many of that light, in an arc, coloured")
+        ->capture_default_str();
     render_command->add_option("--shape", render.shape, "sphere or plane")->capture_default_str();
     render_command->add_option("--size", render.size, "WIDTHxHEIGHT in pixels")->capture_default_str();
     render_command->add_option("--roughness", render.roughness, "GGX alpha, 0 to 1")->capture_default_str();
     render_command->add_option("--density", render.log_density, "natural logarithm of the facets per unit uv^2")
         ->capture_default_str();
-    render_command->add_option("--levels", render.levels, "brightness levels K of the environment")
-        ->capture_default_str();
-    render_command->add_option("--law", render.law, std::string("binomial law: ") + glint::known_laws)
-        ->capture_default_str();
-    render_command->add_option("--interpolate", render.interpolate, "what a pixel blends: variates or counts")
-        ->capture_default_str();
-    render_command->add_option("--softness", render.softness, "of glints' edges, in [0, 1); for variates")
-        ->capture_default_str();
+    add_counting(render_command, render.counting);
     render_command->add_option("--seed", render.seed, "which realisation")->capture_default_str();
     render_command->add_option("-o,--output", render.output, "PNG to write")->capture_default_str();
     render_command->add_flag("--json", render.json, "print one JSON object about the picture");
@@ -64,11 +96,15 @@ int run(int argc, char** argv) {
     glint::furnace_options furnace;
     CLI::App* const furnace_command =
         app.add_subcommand("furnace", "white furnace: the mean of glint / smooth over many realisations");
-    furnace_command->add_option("--law", furnace.law, std::string("binomial law: ") + glint::known_laws)
-        ->capture_default_str();
-    furnace_command->add_option("--levels", furnace.levels, "levels K, one or more")->delimiter(',');
+    add_counting(furnace_command, furnace.counting);
+    furnace_command
+        ->add_option("--light", furnace.lights, "environment, wdh20, directional, sun, area, disk; one or more")
+        ->delimiter(',');
+    furnace_command->add_option("--levels", furnace.levels, "classes K of the environment, one or more")
+        ->delimiter(',');
     furnace_command->add_option("--roughness", furnace.roughness, "GGX alphas")->delimiter(',');
-    furnace_command->add_option("--facets", furnace.facets, "facets per pixel, mean over the sphere")->delimiter(',');
+    furnace_command->add_option("--facets", furnace.facets, "facets per pixel that flash, mean over the sphere")
+        ->delimiter(',');
     furnace_command->add_option("--precision", furnace.precision, "standard error to reach from 1 facet per pixel")
         ->capture_default_str();
     furnace_command->add_flag("--json", furnace.json, "print {\"rows\": [...]}");
@@ -89,6 +125,17 @@ int run(int argc, char** argv) {
     compare_command->add_option("--samples", compare.most_samples, "at most so many samples a row")
         ->capture_default_str();
     compare_command->add_option("--scale", compare.footprint_scale, "size of a glint, in pixels")
+        ->capture_default_str();
+    glint::compare_light_options compare_light;
+    compare_light.scene.light.clear();
+    compare_light.scene.levels = 8;
+    add_light(compare_command, compare_light.scene);
+    compare_command->get_option("--light")->description(
+        "with it: the kernel under that light against explicit facets, over a sphere");
+    compare_command->add_option("--roughness", compare_light.roughness, "GGX alphas, with --light")->delimiter(',');
+    compare_command->add_option("--facets", compare_light.facets, "facets per pixel that flash, with --light")
+        ->delimiter(',');
+    compare_command->add_option("--density", compare_light.scene.log_density, "of the picture, with --light")
         ->capture_default_str();
     compare_command->add_option("--seed", compare.seed, "which realisation")->capture_default_str();
     compare_command->add_option("-o,--output", compare.output, "PNG to write")->capture_default_str();
@@ -113,6 +160,31 @@ int run(int argc, char** argv) {
     between_command->add_option("--seed", between.seed, "which realisation")->capture_default_str();
     between_command->add_flag("--json", between.json, "print {\"rows\": [...]}");
 
+    glint::costs_options costs;
+    CLI::App* const costs_command =
+        app.add_subcommand("costs", "what every light and effect costs: binomials, time and instructions of a pixel");
+    costs_command->add_option("--size", costs.size, "of the square picture whose pixels are shaded")
+        ->capture_default_str();
+    costs_command->add_option("--density", costs.log_density, "natural logarithm of the facets per unit uv^2")
+        ->capture_default_str();
+    costs_command->add_option("--repetitions", costs.repetitions, "of which the median is taken")
+        ->capture_default_str();
+    costs_command->add_flag("--no-callgrind", costs.no_callgrind, "count no instructions");
+    costs_command->add_flag("--counting", costs.counting, "shade every row once (what callgrind runs)")->group("");
+    costs_command->add_flag("--json", costs.json, "print {\"rows\": [...]}");
+
+    glint::figure_options figure;
+    CLI::App* const figure_command =
+        app.add_subcommand("figure", "a figure of KK25, the published method beside ours and explicit facets");
+    figure_command->add_option("number", figure.number, "6, 7, 10, 11, 13 or 14")->required();
+    figure_command->add_option("--env", figure.environment,
+                               "environment map of figures 6 and 10 (none: a procedural one)");
+    figure_command->add_option("--realisations", figure.realisations, "of which means are taken")
+        ->capture_default_str();
+    figure_command->add_option("--seed", figure.seed, "which realisation")->capture_default_str();
+    figure_command->add_option("-o,--output", figure.output, "PNG to write")->capture_default_str();
+    add_threads(figure_command);
+
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& asked) { // --help, --version
@@ -123,6 +195,12 @@ int run(int argc, char** argv) {
 
     if (threads < 0 || threads > 1024)
         throw std::invalid_argument("--threads " + std::to_string(threads) + " is not in [0, 1024]");
+    if (render_command->count("--scene") > 0)
+        for (const CLI::Option* const option : render_command->get_options())
+            if (option->count() > 0 && !option->check_lname("scene") && !option->check_lname("output") &&
+                !option->check_lname("json") && !option->check_lname("threads"))
+                throw std::invalid_argument(option->get_name() +
+                                            " is for scenes without a file: the file of --scene says it");
     if (render_command->count("--env") > 0 && render.environment.empty()) throw std::invalid_argument("--env is empty");
     std::optional<tbb::global_control> limit;
     if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
@@ -130,7 +208,16 @@ int run(int argc, char** argv) {
     if (*render_command) glint::render(render);
     if (*sheet_command) glint::sheet(sheet);
     if (*furnace_command) glint::furnace(furnace);
-    if (*compare_command) glint::compare(compare);
+    if (*compare_command && compare_light.scene.light.empty()) glint::compare(compare);
+    if (*compare_command && !compare_light.scene.light.empty()) {
+        compare_light.scene.counting.law = compare.law;
+        compare_light.scene.seed = compare.seed;
+        compare_light.scene.output = compare.output;
+        compare_light.scene.json = compare.json;
+        glint::compare_light(compare_light);
+    }
+    if (*costs_command) glint::costs(costs);
+    if (*figure_command) glint::figure(figure);
     if (*strips_command) glint::strips(strips);
     if (*cells_command) glint::cells(cells);
     if (*between_command) glint::between(between);

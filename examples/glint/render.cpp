@@ -3,120 +3,161 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <stdexcept>
+
+#include <nlohmann/json.hpp>
+
+#include "scene_file.hpp"
 
 namespace glint {
 
 namespace {
 
-struct picture_size {
-    std::size_t width, height;
-};
-
-/// "WxH", both from 1 to 16384.
-picture_size parse_size(const std::string& text) {
-    picture_size size{};
+/// "WxH".
+std::pair<std::size_t, std::size_t> parse_size(const std::string& text) {
+    std::size_t width = 0, height = 0;
     const char* const end = text.data() + text.size();
-    const auto [cross, width_error] = std::from_chars(text.data(), end, size.width);
+    const auto [cross, width_error] = std::from_chars(text.data(), end, width);
     const bool has_cross = width_error == std::errc() && cross != end && *cross == 'x';
-    const auto [rest, height_error] = std::from_chars(has_cross ? cross + 1 : end, end, size.height);
+    const auto [rest, height_error] = std::from_chars(has_cross ? cross + 1 : end, end, height);
     if (!has_cross || height_error != std::errc() || rest != end)
         throw std::invalid_argument("--size " + text + " is not WIDTHxHEIGHT");
-    if (size.width < 1 || size.height < 1 || size.width > 16384 || size.height > 16384)
-        throw std::invalid_argument("--size " + text + " is not from 1x1 to 16384x16384");
-    return size;
+    return {width, height};
 }
 
-shape parse_shape(const std::string& name) {
-    if (name == "sphere") return shape::sphere;
-    if (name == "plane") return shape::plane;
-    throw std::invalid_argument("unknown shape '" + name + "' (known: sphere, plane)");
+/// "x,y,z".
+vector parse_vector(const std::string& text) {
+    vector v{};
+    int used = 0;
+    if (std::sscanf(text.c_str(), "%f,%f,%f%n", &v.x, &v.y, &v.z, &used) != 3 ||
+        static_cast<std::size_t>(used) != text.size())
+        throw std::invalid_argument("--occluder " + text + " is not x,y,z");
+    return v;
 }
 
-void require(bool holds, const std::string& option, double value, const char* requirement) {
-    if (holds) return;
-    char text[64];
-    std::snprintf(text, sizeof text, " %g is not ", value);
-    throw std::invalid_argument("--" + option + text + requirement);
+/// Of the rainbow, luminance 1: turn in [0, 1).
+colour rainbow(float turn) {
+    const auto band = [turn](float third) {
+        return 1 + 0.9F * std::cos(2 * std::numbers::pi_v<float> * (turn - third / 3));
+    };
+    const colour hue{band(0), band(1), band(2)};
+    return (1 / luminance(hue)) * hue;
 }
 
-/// A string as JSON writes it.
-std::string quoted(const std::string& text) {
-    std::string result = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') {
-            result += {'\\', c};
-        } else if (static_cast<unsigned char>(c) < 0x20) {
-            char escaped[8];
-            std::snprintf(escaped, sizeof escaped, "\\u%04x", c);
-            result += escaped;
-        } else {
-            result += c;
-        }
+/// The light as the option names it. Its radiance is that under which a dielectric-free white surface of the default
+/// roughness is about as bright as under the procedural environment.
+light_description light_named(const render_options& options) {
+    light_description light;
+    light.type = options.light;
+    light.file = options.environment;
+    light.levels = options.levels;
+    light.classes = options.classes;
+    const float radiance = light.type == "sun" ? 2e4F : light.type == "directional" ? 2.F : 4.F;
+    light.radiance = {radiance, radiance, radiance};
+    return light;
+}
+
+/// Turned about the vertical axis.
+vector turned(vector v, float angle) {
+    const float c = std::cos(angle), s = std::sin(angle);
+    return {c * v.x + s * v.z, v.y, c * v.z - s * v.x};
+}
+
+/// The same light so many times in an arc around the scene, each in a colour of the rainbow.
+std::vector<light_description> arc_of(const light_description& light, int count) {
+    if (count < 1 || count > 8) throw std::invalid_argument("--lights " + std::to_string(count) + " is not in [1, 8]");
+    if (count == 1) return {light};
+    if (light.type == "environment" || light.type == "wdh20")
+        throw std::invalid_argument("--lights " + std::to_string(count) + ": an environment is one light");
+    std::vector<light_description> lights;
+    for (int i = 0; i < count; ++i) {
+        const float part = static_cast<float>(i) / static_cast<float>(count);
+        const float angle = (part - 0.5F + 0.5F / static_cast<float>(count)) * std::numbers::pi_v<float>;
+        auto& one = lights.emplace_back(light);
+        for (vector* v : {&one.direction, &one.centre, &one.half_u, &one.half_v, &one.normal}) *v = turned(*v, angle);
+        one.radiance = light.radiance * rainbow(part);
     }
-    return result + '"';
+    return lights;
 }
 
-template <class Law, class Interpolation, std::size_t K>
-void render(const render_options& options, const picture_size& size, shape what, Law, Interpolation interpolation,
-            std::integral_constant<std::size_t, K>) {
-    const stopwatch watch;
-    const auto map = options.environment.empty() ? procedural_environment() : read_environment(options.environment);
-    const png_file output(options.output);
+/// The number that a person would write for it.
+double decimal(float value) {
+    char text[32];
+    const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+    return std::strtod(std::string(text, end).c_str(), nullptr);
+}
 
-    mica::glint_material material;
-    material.roughness = static_cast<float>(options.roughness);
-    material.log_density = static_cast<float>(options.log_density);
-    const mica::prefiltered_environment<K> environment(map, mica::environment_levels<K>(map), {&material.roughness, 1},
-                                                       parallel_loop{"prefiltering"});
-    const mica::microfacet_table table;
+} // namespace
+
+scene_description describe(const render_options& options) {
+    if (!options.scene_file.empty()) return read_scene(options.scene_file);
+    scene_description scene;
+    std::tie(scene.width, scene.height) = parse_size(options.size);
+    scene.seed = options.seed;
+    scene.camera = camera_for(options.shape);
+    surface_description& surface = scene.surfaces.front();
+    surface.shape = options.shape;
+    surface.material.roughness = static_cast<float>(options.roughness);
+    surface.material.log_density = static_cast<float>(options.log_density);
+    scene.lights = arc_of(light_named(options), options.lights);
+    if (!options.occluder.empty()) scene.occluder = parse_vector(options.occluder);
+    scene.counting = options.counting;
+    return scene;
+}
+
+void render(const render_options& options) {
+    const stopwatch watch;
+    const scene_description description = describe(options);
+    check(description);
+    const png_file output(options.output);
+    const shader shade(description);
     const double prepared = watch.seconds();
 
-    const frame seen = render_frame<Law>(scene(what, size.width, size.height), size.width, size.height, material,
-                                         environment, table, options.seed, interpolation);
-    srgb_picture picture(size.width, size.height, 0);
+    const frame seen =
+        render_frame(scene(description.camera, description.surfaces, description.width, description.height), shade,
+                     description.seed);
+    srgb_picture picture(description.width, description.height, 0);
     tone_map(seen.glint, exposure_of(seen), picture, 0, 0);
     output.save(picture);
 
     const auto pixels = static_cast<double>(std::max<std::size_t>(seen.surface_pixels, 1));
     const double ns_per_pixel = seen.seconds * 1e9 / pixels;
-    constexpr std::size_t binomials = Interpolation::template evaluations<mica::grid_vertices<float>> * (K - 1);
+    const auto& light = description.lights.front();
+    const auto& counting = description.counting;
     if (options.json) {
-        std::printf("{\"width\": %zu, \"height\": %zu, \"shape\": %s, \"environment\": %s, \"law\": %s, "
-                    "\"levels\": %zu, \"interpolate\": %s, \"roughness\": %.9g, \"log_density\": %.9g, "
-                    "\"seed\": %u, \"seconds\": %.4f, \"prepare_seconds\": %.4f, \"ns_per_pixel\": %.1f, "
-                    "\"binomials_per_pixel\": %zu, \"surface_pixels\": %zu, \"non_finite_pixels\": %zu, "
-                    "\"mean_glint\": %.9g, \"mean_smooth\": %.9g, \"output\": %s}\n",
-                    size.width, size.height, quoted(options.shape).c_str(),
-                    quoted(options.environment.empty() ? "procedural" : options.environment).c_str(),
-                    quoted(options.law).c_str(), K, quoted(options.interpolate).c_str(), options.roughness,
-                    options.log_density, options.seed, watch.seconds(), prepared, ns_per_pixel, binomials,
-                    seen.surface_pixels, seen.non_finite_pixels, seen.mean_glint, seen.mean_smooth,
-                    quoted(options.output).c_str());
+        nlohmann::ordered_json row = {{"width", description.width},
+                                      {"height", description.height},
+                                      {"shape", description.surfaces.front().shape},
+                                      {"light", light.type},
+                                      {"lights", description.lights.size()},
+                                      {"environment", light.file.empty() ? "procedural" : light.file},
+                                      {"classes", light.classes},
+                                      {"law", counting.law},
+                                      {"levels", light.levels},
+                                      {"interpolate", counting.interpolate},
+                                      {"effects", names_of(counting.effects)},
+                                      {"roughness", decimal(description.surfaces.front().material.roughness)},
+                                      {"log_density", decimal(description.surfaces.front().material.log_density)},
+                                      {"seed", description.seed},
+                                      {"seconds", watch.seconds()},
+                                      {"prepare_seconds", prepared},
+                                      {"ns_per_pixel", ns_per_pixel},
+                                      {"binomials_per_pixel", shade.binomials_per_pixel()},
+                                      {"surface_pixels", seen.surface_pixels},
+                                      {"non_finite_pixels", seen.non_finite_pixels},
+                                      {"mean_glint", seen.mean_glint},
+                                      {"mean_smooth", seen.mean_smooth},
+                                      {"output", options.output}};
+        std::printf("%s\n", row.dump(1).c_str());
     } else {
-        std::printf("%s: %zux%zu, %s law, %zu levels, %.2f s (%.2f s of them prefiltering)\n"
+        std::printf("%s: %zux%zu, %s law, %zu light%s (%s), %.2f s (%.2f s of them preparing)\n"
                     "mean luminance %.4g with glints, %.4g smooth; %.0f ns and %zu binomials per pixel\n",
-                    options.output.c_str(), size.width, size.height, options.law.c_str(), K, watch.seconds(), prepared,
-                    seen.mean_glint, seen.mean_smooth, ns_per_pixel, binomials);
+                    options.output.c_str(), description.width, description.height, counting.law.c_str(),
+                    description.lights.size(), description.lights.size() > 1 ? "s" : "", light.type.c_str(),
+                    watch.seconds(), prepared, seen.mean_glint, seen.mean_smooth, ns_per_pixel,
+                    shade.binomials_per_pixel());
     }
-}
-
-} // namespace
-
-void render(const render_options& options) {
-    const picture_size size = parse_size(options.size);
-    const shape what = parse_shape(options.shape);
-    require(options.roughness >= 0 && options.roughness <= 1, "roughness", options.roughness, "in [0, 1]");
-    require(std::isfinite(options.log_density) && std::abs(options.log_density) <= 60, "density", options.log_density,
-            "in [-60, 60]");
-    if (options.light != "environment")
-        throw std::invalid_argument("unknown light '" + options.light + "' (known: environment)");
-
-    with_law(options.law, [&](auto law) {
-        with_interpolation(options.interpolate, options.softness, law, [&](auto interpolation) {
-            with_levels(options.levels, [&](auto levels) { render(options, size, what, law, interpolation, levels); });
-        });
-    });
 }
 
 } // namespace glint

@@ -1,42 +1,16 @@
 // Rendering of one picture, rows in parallel.
 #pragma once
 
-#include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
-#include <mica/shade/environment_glints.hpp>
-#include <tbb/parallel_for.h>
-
-#include "dispatch.hpp"
 #include "picture.hpp"
-#include "progress.hpp"
+#include "render_loop.hpp"
 #include "scene.hpp"
+#include "shader.hpp"
 
 namespace glint {
-
-/// Runs the rows of a loop side by side, with progress under a label.
-struct parallel_loop {
-    const char* label;
-
-    template <class Body>
-    void operator()(std::size_t count, const Body& body) const {
-        progress reporter(label, count);
-        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-            body(i);
-            reporter.advance();
-        });
-    }
-};
-
-/// Seconds on the wall since it was made.
-class stopwatch {
-  public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// A rendered picture and what was seen in it. Means are of luminance over the pixels that show the surface.
 struct frame {
@@ -51,20 +25,18 @@ struct frame {
 /// Where no surface is.
 inline constexpr mica::rgb<float> background{0, 0, 0};
 
-template <class Law, class Interpolation = mica::blended_variates, std::size_t K>
-frame render_frame(const scene& seen, std::size_t width, std::size_t height, const mica::glint_material& material,
-                   const mica::prefiltered_environment<K>& environment, const mica::microfacet_table& table,
-                   std::uint32_t seed, Interpolation interpolation = {}) {
+inline frame render_frame(const scene& seen, const shader& shade, std::uint32_t seed) {
     const stopwatch watch;
+    const std::size_t width = seen.width(), height = seen.height();
     const std::vector<mica::rgb<float>> empty(width * height, background);
     frame result{{width, height, empty}, {width, height, empty}};
     std::vector<char> shows_surface(width * height, 0);
     parallel_loop{"rendering"}(height, [&](std::size_t y) {
         for (std::size_t x = 0; x < width; ++x) {
-            const auto point = seen.surface(x, y);
-            if (!point) continue;
+            const auto hit = seen.surface(x, y);
+            if (!hit) continue;
             const std::size_t i = y * width + x;
-            const auto radiance = mica::shade<Law>(*point, material, environment, table, seed, interpolation);
+            const auto radiance = shade(hit->point, seen.surfaces()[hit->surface], seed);
             result.glint.pixels[i] = radiance.glint;
             result.smooth.pixels[i] = radiance.smooth;
             shows_surface[i] = 1;
@@ -90,26 +62,33 @@ frame render_frame(const scene& seen, std::size_t width, std::size_t height, con
     return result;
 }
 
-/// The exposure that brings the typical smooth pixel to middle grey. By the smooth radiance, so that pictures of all
-/// densities compare.
-inline float exposure_of(const frame& seen) { return static_cast<float>(0.25 / std::max(seen.log_mean_smooth, 1e-6)); }
+/// The exposure that brings the typical smooth pixel to middle grey, or, under few small lights, where most pixels are black,
+/// a twentieth of the mean. By the smooth radiance, so that pictures of all densities compare.
+inline float exposure_of(const frame& seen) {
+    return static_cast<float>(0.25 / std::max({seen.log_mean_smooth, seen.mean_smooth / 8, 1e-6}));
+}
 
 /// What the command line asks of `glint render`.
 struct render_options {
-    std::string environment; ///< path of an .hdr file, or empty for the procedural environment
+    std::string scene_file; ///< JSON; empty: the scene that the other options describe
+    std::string environment;
     std::string light = "environment";
     std::string shape = "sphere";
     std::string size = "960x540";
+    std::string occluder; ///< "x,y,z", or empty
+    std::string classes = "brightness";
     double roughness = 0.1;
     double log_density = 13;
     int levels = 4;
-    std::string law = "quantile";
-    std::string interpolate = "variates";
-    double softness = 0;
+    int lights = 1;
+    counting_description counting;
     std::uint32_t seed = 1;
     std::string output = "glint.png";
     bool json = false;
 };
+
+/// The scene that the options describe, or the one of their file.
+scene_description describe(const render_options& options);
 
 void render(const render_options& options);
 
@@ -123,7 +102,8 @@ void sheet(const sheet_options& options);
 
 /// What the command line asks of `glint furnace`.
 struct furnace_options {
-    std::string law = "exact";
+    counting_description counting{"exact", "variates", 0, {}};
+    std::vector<std::string> lights = {"environment"};
     std::vector<int> levels = {2, 4, 8};
     std::vector<double> roughness = {0.04, 0.1, 0.25, 0.5};
     std::vector<double> facets = {0.02, 0.14, 1, 7, 50, 400};

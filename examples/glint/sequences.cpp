@@ -6,6 +6,7 @@
 #include <map>
 
 #include <mica/law/exact.hpp>
+#include <mica/law/quantile.hpp>
 #include <mica/law/smooth_quantile.hpp>
 
 #include "compare.hpp"

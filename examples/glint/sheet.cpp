@@ -13,16 +13,15 @@ void sheet(const sheet_options& options) {
     constexpr std::size_t block = margin_top + rows * (tile + gap);
 
     const png_file output(options.output);
-    const auto map = procedural_environment();
-    const mica::microfacet_table table;
-    const scene seen(shape::sphere, tile, tile);
     srgb_picture picture(margin_left + columns * (tile + gap), 2 * block, 24);
+    scene_description description;
+    description.seed = options.seed;
+    auto& material = description.surfaces.front().material;
 
-    const auto draw_block = [&]<std::size_t K>(std::integral_constant<std::size_t, K>, std::size_t top) {
-        const mica::prefiltered_environment<K> environment(map, mica::environment_levels<K>(map), roughnesses,
-                                                           parallel_loop{"prefiltering"});
+    const auto draw_block = [&](int levels, std::size_t top) {
+        description.lights.front().levels = levels;
         const auto left_of = [](std::size_t column) { return margin_left + column * (tile + gap); };
-        draw_text(picture, "K = " + std::to_string(K), 8, top + 14, 2, 255);
+        draw_text(picture, "K = " + std::to_string(levels), 8, top + 14, 2, 255);
         char label[64];
         for (std::size_t column = 0; column < std::size(densities); ++column) {
             std::snprintf(label, sizeof label, "log density %g", static_cast<double>(densities[column]));
@@ -34,20 +33,20 @@ void sheet(const sheet_options& options) {
             draw_text(picture, "roughness", 8, tile_top + tile / 2 - 12, 1, 200);
             std::snprintf(label, sizeof label, "%g", static_cast<double>(roughnesses[row]));
             draw_text(picture, label, 8, tile_top + tile / 2, 2, 200);
+            material.roughness = roughnesses[row];
+            const shader shade(description);
             for (std::size_t column = 0; column < std::size(densities); ++column) {
-                mica::glint_material material;
-                material.roughness = roughnesses[row];
                 material.log_density = densities[column];
-                const frame rendered = render_frame<mica::quantile_binomial<4>>(seen, tile, tile, material, environment,
-                                                                                table, options.seed);
+                const scene seen(description.camera, description.surfaces, tile, tile);
+                const frame rendered = render_frame(seen, shade, options.seed);
                 tone_map(rendered.glint, exposure_of(rendered), picture, left_of(column), tile_top);
                 if (column == 0)
                     tone_map(rendered.smooth, exposure_of(rendered), picture, left_of(columns - 1), tile_top);
             }
         }
     };
-    draw_block(std::integral_constant<std::size_t, 4>{}, 0);
-    draw_block(std::integral_constant<std::size_t, 8>{}, block);
+    draw_block(4, 0);
+    draw_block(8, block);
     output.save(picture);
     std::printf("%s\n", options.output.c_str());
 }

@@ -1,77 +1,126 @@
 // mica/shade/environment_glints.hpp: glints under an environment.
 //
-//     radiance = L_o sum_k L_k M_k / (N sum_k L_k p_k),   p_k = (E_D / D_H) w_k,   M ~ Multinomial(N, p)
+//     p_k = (E_D / D_H) w_k   for all classes of its radiance but the dimmest, which gets the rest
 //
-// Source: KK25 Sec. 4 and 5, Eq. 15, 17, 21. L_o is the smooth image-based radiance (split sum) in the mirror
-// direction, w_k the prefiltered indicators of the levels L_k, N the facets in the pixel. What is missing to sum p = 1
-// are facets that reflect nothing. They and level 1, whose radiance is 0 as published, are what the multinomial of the
-// other K - 1 levels leaves over, so K levels cost K - 1 binomials.
+// w_k is the part of the lobe around the mirror direction that shows class k. What is missing to sum p = 1 are facets that
+// reflect nothing; the dimmest class takes them in, dimmed so that its energy is kept. So K classes cost K - 1 binomials.
+// Source: KK25 Sec. 4 and 5, Eq. 15, 17, 21. The smooth radiance is that of the split sum.
+//
+// Two kinds of classes: those of prefiltered_classes, crisp and with the colour and brightness that each has in the lobe
+// (the default), and the fuzzy levels of prefiltered_environment, as published, whose glints have the colour of the whole
+// lobe and the radiance of their level.
 #pragma once
 
-#include <array>
-
-#include "../grid/distributed.hpp"
+#include "glint_kernel.hpp"
 #include "microfacet.hpp"
 #include "prefilter.hpp"
-#include "shading_point.hpp"
 
 namespace mica {
 
-/// Glint radiance over smooth radiance in one pixel, >= 0, with mean 1.
-///
-/// trials: the facets in the pixel. levels: L_1 = 0 .. L_K. indicators: w_1 .. w_K of the pixel's lobe. visible_fraction:
-/// E_D / D_H. 1, the mean, where there is nothing to count: a degenerate footprint, black all around, or so few facets
-/// towards so little light that their expected flashes are below 1e-30.
-template <class Law, class Interpolation = blended_variates, std::size_t K, class Vertices>
-MICA_HOST_DEVICE typename Vertices::number glint_ratio(const Vertices& vertices, typename Vertices::number trials,
-                                                       const std::array<typename Vertices::number, K>& levels,
-                                                       const std::array<typename Vertices::number, K>& indicators,
-                                                       typename Vertices::number visible_fraction,
-                                                       Interpolation interpolation = {}) {
-    using Real = typename Vertices::number;
-    const auto lit = levels[K - 1] > Real(0);
-    const Real brightest = select(lit, levels[K - 1], Real(1));
-    std::array<Real, K - 1> probabilities;
-    Real expected = Real(0); // of the radiance that one facet reflects, relative to the top level
-    for (std::size_t k = 1; k < K; ++k) {
-        probabilities[k - 1] = visible_fraction * indicators[k];
-        expected = expected + levels[k] / brightest * probabilities[k - 1];
-    }
-    const Real expected_flashes = trials * expected;
-    const auto counted = lit && expected_flashes >= Real(1e-30F);
-    if (!any(counted)) return Real(1);
-    const auto counts = distributed_multinomial<K - 1, Law, Interpolation>{interpolation}(vertices, probabilities);
-    Real reflected = Real(0);
-    for (std::size_t k = 1; k < K; ++k) reflected = reflected + levels[k] / brightest * counts[k - 1];
-    return select(counted, reflected / select(counted, expected_flashes, Real(1)), Real(1));
-}
-
-/// A glittering surface.
-struct glint_material {
-    float roughness = 0.1F;                          ///< GGX alpha, in [0, 1]
-    float log_density = 13;                          ///< natural logarithm of the facets per unit uv^2
-    rgb<float> f0 = {0.95F, 0.93F, 0.88F};           ///< reflectance at normal incidence
-    float footprint_scale = default_footprint_scale; ///< size of a glint, in pixels
+/// What the lobe around a direction sees of the K classes of an environment: the radiance of each in it, all together that
+/// of the lobe, and the part of the lobe that shows it.
+template <real_number Real, std::size_t K>
+struct environment_lobe {
+    std::array<rgb<Real>, K> radiance;
+    std::array<Real, K> share; ///< sum 1; less where something occludes the environment
 };
 
-/// The radiance of a pixel. `seed` picks the realisation.
-template <class Law, class Interpolation = blended_variates, std::size_t K>
-glint_radiance<float> shade(const shading_point<float>& point, const glint_material& material,
-                            const prefiltered_environment<K>& environment, const microfacet_table& table,
-                            std::uint32_t seed, Interpolation interpolation = {}) {
-    const float n_dot_v = dot(point.normal, point.wo);
-    if (!(n_dot_v > 0)) return {{0, 0, 0}, {0, 0, 0}};
-    const auto lobe = environment(reflected(point.wo, point.normal), material.roughness);
-    const auto albedo = table.albedo(n_dot_v, material.roughness);
-    const rgb<float> reflectance = albedo.scale * material.f0 + rgb<float>{albedo.bias, albedo.bias, albedo.bias};
-    const rgb<float> smooth = reflectance * lobe.radiance;
+/// The lobe in published levels: all of the colour of the whole, as bright as L_k is beside the others.
+template <std::size_t K>
+environment_lobe<float, K> lobe_of(const prefiltered_environment<K>& environment, vector3<float> r, float roughness) {
+    const auto seen = environment(r, roughness);
+    const auto& levels = environment.levels().radiance();
+    environment_lobe<float, K> lobe{{}, seen.indicator};
+    const float brightest = levels[K - 1] > 0 ? levels[K - 1] : 1; // so that no product overflows
+    float total = 0;
+    for (std::size_t k = 0; k < K; ++k) total += levels[k] / brightest * seen.indicator[k];
+    for (std::size_t k = 0; k < K; ++k) {
+        // Without light in any level (a black lobe) the dimmest has what there is.
+        const float part = total > 0 ? levels[k] / brightest * seen.indicator[k] / total : (k == 0 ? 1.F : 0.F);
+        lobe.radiance[k] = part * seen.radiance;
+    }
+    return lobe;
+}
 
-    const auto pixel = make_footprint(point.derivatives);
-    const float trials = minimum(std::exp(material.log_density) * pixel.area, 1e30F);
-    const auto vertices = make_grid_vertices(pixel, point.uv, trials, seed, material.footprint_scale);
-    const float ratio = glint_ratio<Law>(vertices, trials, environment.levels().radiance(), lobe.indicator,
-                                         table.visible_fraction(n_dot_v, material.roughness), interpolation);
-    return {ratio * smooth, smooth};
+/// The lobe in local classes.
+template <std::size_t K>
+environment_lobe<float, K> lobe_of(const prefiltered_classes<K>& environment, vector3<float> r, float roughness) {
+    const auto seen = environment(r, roughness);
+    return {seen.radiance, seen.share};
+}
+
+namespace detail {
+
+/// Everything that comes of tables: the lobe, its reflectance, and E_D / D_H.
+template <real_number Real, std::size_t K>
+struct environment_seen {
+    environment_lobe<Real, K> lobe;
+    rgb<Real> reflectance;
+    Real visible_fraction;
+};
+
+/// Nothing from behind the surface.
+template <std::size_t K, class Environment>
+environment_seen<float, K> seen_of(const Environment& environment, const microfacet_table& table,
+                                   const glint_material& material, vector3<float> r, float n_dot_v) {
+    if (!(n_dot_v > 0)) return {};
+    const auto albedo = table.albedo(n_dot_v, material.roughness);
+    return {lobe_of(environment, r, material.roughness),
+            albedo.scale * material.f0 + rgb<float>{albedo.bias, albedo.bias, albedo.bias},
+            table.visible_fraction(n_dot_v, material.roughness)};
+}
+
+template <real_number Real>
+void set_lane(rgb<Real>& colour, int i, rgb<float> value) {
+    mica::set_lane(colour.r, i, value.r);
+    mica::set_lane(colour.g, i, value.g);
+    mica::set_lane(colour.b, i, value.b);
+}
+
+/// Packs look up their lanes one by one.
+template <std::size_t K, real_number Real, class Environment>
+environment_seen<Real, K> seen_of(const Environment& environment, const microfacet_table& table,
+                                  const glint_material& material, vector3<Real> r, Real n_dot_v) {
+    environment_seen<Real, K> seen{};
+    for (int i = 0; i < lanes_of<Real>; ++i) {
+        const vector3<float> towards{lane(r.x, i), lane(r.y, i), lane(r.z, i)};
+        const auto one = seen_of<K>(environment, table, material, towards, lane(n_dot_v, i));
+        for (std::size_t k = 0; k < K; ++k) {
+            set_lane(seen.lobe.radiance[k], i, one.lobe.radiance[k]);
+            mica::set_lane(seen.lobe.share[k], i, one.lobe.share[k]);
+        }
+        set_lane(seen.reflectance, i, one.reflectance);
+        mica::set_lane(seen.visible_fraction, i, one.visible_fraction);
+    }
+    return seen;
+}
+
+} // namespace detail
+
+/// The classes of an environment (prefiltered_classes<K> or prefiltered_environment<K>) in a pixel. All black where the
+/// eye is behind the surface.
+template <real_number Real, template <std::size_t> class Environment, std::size_t K>
+std::array<light_class<Real>, K> light_classes(const shading_point<Real>& point, const glint_material& material,
+                                               const Environment<K>& environment, const microfacet_table& table) {
+    const Real n_dot_v = dot(point.normal, point.wo);
+    const auto seen = detail::seen_of<K>(environment, table, material, reflected(point.wo, point.normal), n_dot_v);
+    std::array<light_class<Real>, K> classes;
+    Real rest = Real(1);
+    for (std::size_t k = K; k-- > 0;) {
+        const Real probability = k > 0 ? seen.visible_fraction * seen.lobe.share[k] : maximum(rest, Real(0));
+        classes[k] = {seen.reflectance * seen.lobe.radiance[k], probability};
+        rest = rest - probability;
+    }
+    return classes;
+}
+
+/// The radiance of a pixel under an environment. `seed` picks the realisation.
+template <class Kernel, real_number Real, template <std::size_t> class Environment, std::size_t K>
+glint_radiance<Real> shade(const Kernel& kernel, const shading_point<Real>& point, const glint_material& material,
+                           const Environment<K>& environment, const microfacet_table& table, std::uint32_t seed) {
+    vector3<Real> half_of_eye{};
+    if constexpr (Kernel::has_half_vectors) half_of_eye = Real(0.5) * point.local(point.wo);
+    return kernel(point, material, light_classes(point, material, environment, table), half_of_eye, seed);
 }
 
 } // namespace mica

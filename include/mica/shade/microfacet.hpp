@@ -9,12 +9,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include "vector.hpp"
+#include "ndf.hpp"
 
 namespace mica {
-
-/// Roughness below this counts as it where a density is evaluated; at 0 the surface is a mirror and has none.
-inline constexpr float smallest_roughness = 1e-4F;
 
 /// GGX normal distribution, facet area per surface area and solid angle of h (Walter et al. 2007, Eq. 33); its
 /// integral times n.h is 1. n_dot_h in [0, 1].

@@ -19,7 +19,7 @@
 #include <span>
 #include <vector>
 
-#include "environment.hpp"
+#include "environment_classes.hpp"
 #include "microfacet.hpp"
 
 namespace mica {
@@ -35,8 +35,8 @@ struct serial_loop {
 namespace detail {
 
 /// A map and its blocks of 2^m x 2^m texels, m = 0, 1, ...: mean of each channel, direction and solid angle. The first
-/// three channels are radiance.
-template <std::size_t Channels>
+/// `Radiance` channels add up to the light of a texel.
+template <std::size_t Channels, std::size_t Radiance>
 class texel_pyramid {
   public:
     using value_type = std::array<float, Channels>;
@@ -65,10 +65,9 @@ class texel_pyramid {
                 blocks.radius.push_back(radius_of(blocks, y, width, height));
     }
 
-    /// sum f D n.l dOmega / sum D n.l dOmega around r.
-    value_type filtered(vector3<float> r, float alpha) const {
-        // A block is small against the kernel when its radius is below this part of the kernel's scale.
-        constexpr float fineness = 0.3F;
+    /// sum f D n.l dOmega / sum D n.l dOmega around r. A block is small against the kernel when its radius is below
+    /// `fineness` times the kernel's scale.
+    value_type filtered(vector3<float> r, float alpha, float fineness) const {
         constexpr float widest = 0.12F; // radians; for the cosine, which the scale leaves out
         struct place {
             std::size_t layer, x, y;
@@ -123,7 +122,9 @@ class texel_pyramid {
     };
 
     static double light_of(const block& b) {
-        return static_cast<double>(b.mean[0]) + static_cast<double>(b.mean[1]) + static_cast<double>(b.mean[2]);
+        double sum = 0;
+        for (std::size_t c = 0; c < Radiance; ++c) sum += static_cast<double>(b.mean[c]);
+        return sum;
     }
 
     /// What a block's direction is weighted by: its light over that of the mean texel, and 1 for the dark ones.
@@ -181,6 +182,98 @@ class texel_pyramid {
 
 } // namespace detail
 
+/// How finely an environment is filtered: the time it takes and its error.
+struct prefilter_quality {
+    std::size_t most_columns = 1024; ///< of a filtered map, twice as many as rows
+    float texels_per_roughness = 3;  ///< of it; two leave 4 % of the lobe's peak to the bilinear interpolation
+    float fineness = 0.3F;           ///< radius of what is taken together, over the scale on which the lobe changes
+};
+
+/// For environments that change from frame to frame: @DYNAMIC@
+inline constexpr prefilter_quality every_frame{64, 2, 0.6F};
+
+namespace detail {
+
+/// Maps of so many channels, filtered for a set of roughnesses. The first `Radiance` channels add up to the light.
+template <std::size_t Channels, std::size_t Radiance>
+class filtered_maps {
+  public:
+    using value_type = std::array<float, Channels>;
+
+    template <class Loop>
+    filtered_maps(std::size_t width, std::size_t height, const std::vector<value_type>& values,
+                  std::span<const float> roughnesses, const Loop& loop, const prefilter_quality& quality) {
+        if (roughnesses.empty()) MICA_FAIL("number of roughnesses", 0, "positive");
+        const texel_pyramid<Channels, Radiance> pyramid(width, height, values);
+        for (const float roughness : roughnesses) {
+            if (!(roughness >= 0)) MICA_FAIL("roughness", roughness, ">= 0");
+            if (!maps_.empty() && !(roughness > maps_.back().roughness))
+                MICA_FAIL("roughness", roughness, "greater than the one before it");
+            maps_.push_back({roughness, narrower_than_a_texel(roughness, height)
+                                            ? image_type{width, height, values}
+                                            : filtered(pyramid, roughness, loop, quality)});
+        }
+    }
+
+    /// Between the given roughnesses linear in perceptual roughness, beyond them the nearest.
+    value_type operator()(vector3<float> r, float roughness) const {
+        std::size_t upper = 0;
+        while (upper + 1 < maps_.size() && maps_[upper].roughness < roughness) ++upper;
+        const std::size_t lower = upper == 0 || roughness >= maps_[upper].roughness ? upper : upper - 1;
+        value_type value{};
+        if (lower == upper) {
+            add(value, maps_[upper].image, r, 1);
+        } else {
+            const float low = std::sqrt(maps_[lower].roughness), high = std::sqrt(maps_[upper].roughness);
+            const float part = (std::sqrt(roughness) - low) / (high - low);
+            add(value, maps_[lower].image, r, 1 - part);
+            add(value, maps_[upper].image, r, part);
+        }
+        return value;
+    }
+
+  private:
+    using image_type = equirect_image<value_type>;
+    struct filtered_map {
+        float roughness;
+        image_type image;
+    };
+    static constexpr float pi = 3.14159265358979F;
+
+    static bool narrower_than_a_texel(float roughness, std::size_t height) {
+        return 2 * roughness < pi / static_cast<float>(height);
+    }
+
+    template <class Loop>
+    static image_type filtered(const texel_pyramid<Channels, Radiance>& pyramid, float roughness, const Loop& loop,
+                               const prefilter_quality& quality) {
+        // The lobe's half width at half height is 1.3 roughness.
+        const auto wanted = static_cast<std::size_t>(quality.texels_per_roughness * std::ceil(2 * pi / roughness));
+        image_type result;
+        result.width = std::clamp(wanted, (std::min)(std::size_t{64}, quality.most_columns), quality.most_columns);
+        result.height = (std::max)(result.width / 2, std::size_t{1});
+        result.texels.resize(result.width * result.height);
+        loop(result.height, [&](std::size_t y) {
+            const float v = (static_cast<float>(y) + 0.5F) / static_cast<float>(result.height);
+            for (std::size_t x = 0; x < result.width; ++x) {
+                const float u = (static_cast<float>(x) + 0.5F) / static_cast<float>(result.width);
+                result.texels[y * result.width + x] =
+                    pyramid.filtered(direction_of({u, v}), roughness, quality.fineness);
+            }
+        });
+        return result;
+    }
+
+    static void add(value_type& sum, const image_type& image, vector3<float> r, float weight) {
+        for (const auto& tap : image.taps(r))
+            for (std::size_t c = 0; c < Channels; ++c) sum[c] += weight * tap.weight * image.texels[tap.index][c];
+    }
+
+    std::vector<filtered_map> maps_;
+};
+
+} // namespace detail
+
 /// Radiance and the K level indicators of an environment, filtered for a set of roughnesses.
 template <std::size_t K>
 class prefiltered_environment {
@@ -195,44 +288,17 @@ class prefiltered_environment {
     /// use the map as it is. `loop` runs the rows of the result, serially unless told otherwise.
     template <class Loop = serial_loop>
     prefiltered_environment(const environment_map& map, const environment_levels<K>& levels,
-                            std::span<const float> roughnesses, const Loop& loop = {})
-        : levels_(levels) {
-        if (roughnesses.empty()) MICA_FAIL("number of roughnesses", 0, "positive");
-        const auto& image = map.image();
-        std::vector<value_type> values;
-        values.reserve(image.texels.size());
-        for (const auto& texel : image.texels) {
-            value_type value{texel.r, texel.g, texel.b};
-            const auto indicators = levels.indicators(luminance(texel));
-            std::copy(indicators.begin(), indicators.end(), value.begin() + bands);
-            values.push_back(value);
-        }
-        const detail::texel_pyramid<bands + K> pyramid(image.width, image.height, values);
-        for (const float roughness : roughnesses) {
-            if (!(roughness >= 0)) MICA_FAIL("roughness", roughness, ">= 0");
-            if (!filtered_.empty() && !(roughness > filtered_.back().roughness))
-                MICA_FAIL("roughness", roughness, "greater than the one before it");
-            filtered_.push_back({roughness, filter(pyramid, values, image.width, image.height, roughness, loop)});
-        }
-    }
+                            std::span<const float> roughnesses, const Loop& loop = {},
+                            const prefilter_quality& quality = {})
+        : levels_(levels),
+          maps_(map.image().width, map.image().height, values_of(map, levels), roughnesses, loop, quality) {}
 
     const environment_levels<K>& levels() const { return levels_; }
 
     /// The lobe of a roughness around direction r; between the given roughnesses linear in perceptual roughness,
     /// beyond them the nearest.
     sample operator()(vector3<float> r, float roughness) const {
-        std::size_t upper = 0;
-        while (upper + 1 < filtered_.size() && filtered_[upper].roughness < roughness) ++upper;
-        const std::size_t lower = upper == 0 || roughness >= filtered_[upper].roughness ? upper : upper - 1;
-        value_type value{};
-        if (lower == upper) {
-            add(value, filtered_[upper].image, r, 1);
-        } else {
-            const float low = std::sqrt(filtered_[lower].roughness), high = std::sqrt(filtered_[upper].roughness);
-            const float part = (std::sqrt(roughness) - low) / (high - low);
-            add(value, filtered_[lower].image, r, 1 - part);
-            add(value, filtered_[upper].image, r, part);
-        }
+        const auto value = maps_(r, roughness);
         sample result{{value[0], value[1], value[2]}, {}};
         std::copy(value.begin() + bands, value.end(), result.indicator.begin());
         return result;
@@ -240,43 +306,86 @@ class prefiltered_environment {
 
   private:
     static constexpr std::size_t bands = 3;
-    using value_type = std::array<float, bands + K>;
-    using image_type = equirect_image<value_type>;
+    using maps_type = detail::filtered_maps<bands + K, bands>;
 
-    struct filtered_image {
-        float roughness;
-        image_type image;
-    };
-
-    template <class Loop>
-    static image_type filter(const detail::texel_pyramid<bands + K>& pyramid, const std::vector<value_type>& values,
-                             std::size_t width, std::size_t height, float roughness, const Loop& loop) {
-        constexpr float pi = 3.14159265358979F;
-        if (2 * roughness < pi / static_cast<float>(height)) return {width, height, values};
-        // Three texels per roughness: the lobe's half width at half height is 1.3 roughness, and two leave 4 % of its
-        // peak to the bilinear interpolation.
-        const auto wanted = 3 * static_cast<std::size_t>(std::ceil(2 * pi / roughness));
-        image_type result;
-        result.width = std::clamp(wanted, std::size_t{64}, std::size_t{1024});
-        result.height = result.width / 2;
-        result.texels.resize(result.width * result.height);
-        loop(result.height, [&](std::size_t y) {
-            const float v = (static_cast<float>(y) + 0.5F) / static_cast<float>(result.height);
-            for (std::size_t x = 0; x < result.width; ++x) {
-                const float u = (static_cast<float>(x) + 0.5F) / static_cast<float>(result.width);
-                result.texels[y * result.width + x] = pyramid.filtered(direction_of({u, v}), roughness);
-            }
-        });
-        return result;
-    }
-
-    static void add(value_type& sum, const image_type& image, vector3<float> r, float weight) {
-        for (const auto& tap : image.taps(r))
-            for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += weight * tap.weight * image.texels[tap.index][c];
+    static std::vector<typename maps_type::value_type> values_of(const environment_map& map,
+                                                                 const environment_levels<K>& levels) {
+        std::vector<typename maps_type::value_type> values;
+        values.reserve(map.image().texels.size());
+        for (const auto& texel : map.image().texels) {
+            auto& value = values.emplace_back(typename maps_type::value_type{texel.r, texel.g, texel.b});
+            const auto indicators = levels.indicators(luminance(texel));
+            std::copy(indicators.begin(), indicators.end(), value.begin() + bands);
+        }
+        return values;
     }
 
     environment_levels<K> levels_;
-    std::vector<filtered_image> filtered_;
+    maps_type maps_;
+};
+
+/// Nothing occludes the environment.
+struct all_visible {
+    float operator()(vector3<float>) const { return 1; }
+};
+
+/// The K classes of an environment, filtered for a set of roughnesses: what each shines with in a lobe, in colour, and how
+/// much of the lobe shows it.
+template <std::size_t K>
+class prefiltered_classes {
+  public:
+    /// What the lobe around a direction sees.
+    struct sample {
+        std::array<rgb<float>, K> radiance; ///< of each class; their sum is the radiance of the lobe
+        std::array<float, K> share;         ///< >= 0, sum 1; less where something occludes the environment
+    };
+
+    /// roughnesses and loop as for prefiltered_environment. visible(direction), in [0, 1], is what an occluder leaves of each
+    /// texel: what it hides has no radiance and no share.
+    template <class Visible = all_visible, class Loop = serial_loop>
+    prefiltered_classes(const environment_map& map, const environment_classes<K>& classes,
+                        std::span<const float> roughnesses, const Visible& visible = {}, const Loop& loop = {},
+                        const prefilter_quality& quality = {})
+        : maps_(map.image().width, map.image().height, values_of(map, classes, visible), roughnesses, loop, quality) {}
+
+    /// The lobe of a roughness around direction r, as prefiltered_environment has it.
+    sample operator()(vector3<float> r, float roughness) const {
+        const auto value = maps_(r, roughness);
+        sample result;
+        for (std::size_t k = 0; k < K; ++k) {
+            result.radiance[k] = {value[3 * k], value[3 * k + 1], value[3 * k + 2]};
+            result.share[k] = value[3 * K + k];
+        }
+        return result;
+    }
+
+  private:
+    /// The bands of all classes, then their indicators.
+    using maps_type = detail::filtered_maps<4 * K, 3 * K>;
+
+    template <class Visible>
+    static std::vector<typename maps_type::value_type>
+    values_of(const environment_map& map, const environment_classes<K>& classes, const Visible& visible) {
+        const auto& image = map.image();
+        std::vector<typename maps_type::value_type> values;
+        values.reserve(image.texels.size());
+        for (std::size_t y = 0; y < image.height; ++y)
+            for (std::size_t x = 0; x < image.width; ++x) {
+                const rgb<float>& texel = image.at(x, y);
+                const float u = (static_cast<float>(x) + 0.5F) / static_cast<float>(image.width);
+                const float v = (static_cast<float>(y) + 0.5F) / static_cast<float>(image.height);
+                const float left = clamp(visible(direction_of({u, v})), 0.F, 1.F);
+                const std::size_t k = classes.class_of(texel);
+                auto& value = values.emplace_back(typename maps_type::value_type{});
+                value[3 * k] = left * texel.r;
+                value[3 * k + 1] = left * texel.g;
+                value[3 * k + 2] = left * texel.b;
+                value[3 * K + k] = left;
+            }
+        return values;
+    }
+
+    maps_type maps_;
 };
 
 } // namespace mica
