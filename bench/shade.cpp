@@ -168,9 +168,35 @@ void register_kernels(const std::string& suite) {
         plain{});
 }
 
+/// A map that changes: its classes and its filtered map, for one roughness. An item is a whole map.
+void register_prefilter() {
+    const auto measure = [](const std::string& name, std::size_t width, float roughness,
+                            mica::prefilter_quality quality) {
+        std::vector<mica::rgb<float>> texels;
+        for (std::size_t y = 0; y < width / 2; ++y)
+            for (std::size_t x = 0; x < width; ++x)
+                texels.push_back(
+                    sky()(mica::direction_of({(static_cast<float>(x) + 0.5F) / static_cast<float>(width),
+                                              2 * (static_cast<float>(y) + 0.5F) / static_cast<float>(width)})));
+        const mica::environment_map map(width, width / 2, std::move(texels));
+        streams::measure("prefilter/" + name, 1, [map, roughness, quality] {
+            const float roughnesses[] = {roughness};
+            const mica::prefiltered_classes<4> filtered(map, mica::environment_classes<4>::by_brightness(map),
+                                                        roughnesses, {}, {}, quality);
+            benchmark::DoNotOptimize(filtered({0, 1, 0}, roughness).share[0]);
+        });
+    };
+    measure("every_frame_128_rough_0.16", 128, 0.16F, mica::every_frame);
+    measure("every_frame_128_rough_0.3", 128, 0.3F, mica::every_frame);
+    measure("every_frame_64_rough_0.3", 64, 0.3F, mica::every_frame);
+    measure("static_1024_rough_0.16", 1024, 0.16F, {});
+    measure("static_1024_rough_0.3", 1024, 0.3F, {});
+}
+
 } // namespace
 
 void suites::register_shade() {
+    register_prefilter();
     register_kernels<float>("shade_scalar/");
     register_kernels<mica::pack<float, mica::native_lanes<float>>>("shade/");
 }

@@ -388,7 +388,7 @@ TEST(Prefilter, BlocksAgreeWithThePlainSum) {
     const mica::detail::texel_pyramid<3, 3> pyramid(256, 128, values);
     for (const float roughness : filter_roughnesses) {
         const auto error = error_of(map, static_cast<double>(roughness), 60, [&](direction r) {
-            const auto value = pyramid.filtered(r, roughness, 0.3F);
+            const auto value = pyramid.filtered(r, roughness, 0.3F, 0.12F);
             return mica::luminance(colour{value[0], value[1], value[2]});
         });
         std::printf("blocks, roughness %.2f: largest error %.2g relative, %.2g of the peak\n",

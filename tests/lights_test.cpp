@@ -81,8 +81,9 @@ void for_both(float x, float y, const Body& body) {
 // --- distributions ----------------------------------------------------------------------------------------------
 
 TEST(Distributions, DensityAndArea) {
-    for (const auto& [x, y] :
-         {std::pair{0.02F, 0.02F}, {0.1F, 0.1F}, {0.6F, 0.6F}, {1.F, 1.F}, {0.05F, 0.5F}, {0.9F, 0.2F}})
+    for (const auto& roughness :
+         {std::pair{0.02F, 0.02F}, {0.1F, 0.1F}, {0.6F, 0.6F}, {1.F, 1.F}, {0.05F, 0.5F}, {0.9F, 0.2F}}) {
+        const float x = roughness.first, y = roughness.second;
         for_both(x, y, [&](const auto& facets, const plain_facets& plain) {
             const double area = plain.integral([](exact_vector) { return 1.; });
             EXPECT_NEAR(static_cast<double>(facets.facet_area()), area, 2e-4 * area) << x << ' ' << y << plain.beckmann;
@@ -108,6 +109,7 @@ TEST(Distributions, DensityAndArea) {
             }
             EXPECT_NEAR(covered, 1, 5e-3) << x << ' ' << y << plain.beckmann;
         });
+    }
 }
 
 // The square of 1/cos^2 outgrows the exponential: D(h) / D(n) = exp(-t) (1+t)^2 has its largest value 4 / e at t = 1.

@@ -130,9 +130,10 @@ light_row compared(const std::vector<prepared_pixel>& pixels, const shader& shad
         });
         part.kernel.mean = y;
         part.kernel.square = mean_square(trials, y, y_square, false);
+        const auto light = shade.illuminate(pixel.point, surface);
         add_samples(part.kernel, y, [&](std::size_t k) {
             const auto s = mica::hash(seed, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k));
-            return static_cast<double>(luminance(shade(pixel.point, surface, s).glint));
+            return static_cast<double>(luminance(shade(pixel.point, surface, light, s).glint));
         });
         const auto add_facets = [&](pixel_sums& sums, const facet_outcomes& outcomes, bool uniform) {
             sums.mean = outcomes.mean();
@@ -171,7 +172,7 @@ std::vector<prepared_pixel> prepare(const explicit_light& light, const scene_des
     std::vector<std::optional<prepared_pixel>> all(points.size());
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         const auto& point = points[i];
-        const auto beams = light.beams(point, static_cast<double>(material.roughness));
+        const auto beams = light.beams(point);
         auto true_lobe = facets_under(beams, point, material);
         const auto albedo = table.albedo(dot(point.normal, point.wo), material.roughness);
         const auto reflectance = albedo.scale * material.f0 + colour{albedo.bias, albedo.bias, albedo.bias};
@@ -224,7 +225,11 @@ void compare_light(const compare_light_options& options) {
     for (const double roughness : options.roughness)
         if (!(roughness >= 0.02 && roughness <= 1)) throw std::invalid_argument("--roughness is not in [0.02, 1]");
     const png_file output(options.scene.output);
-    const auto light = make_explicit_light(description.lights.front(), description.occluder);
+    // The normals that flash lie in a cone of R times the size of the lobe, across which D should not change.
+    if (description.lights.front().type == "directional") description.lights.front().glint_fraction = 0.02F;
+    const auto explicit_of = [&](float roughness) {
+        return make_explicit_light(description.lights.front(), description.occluder, roughness);
+    };
     const mica::microfacet_table table;
 
     progress reporter("compare", options.roughness.size() * (options.facets.size() + 1));
@@ -232,7 +237,7 @@ void compare_light(const compare_light_options& options) {
     for (const double roughness : options.roughness) {
         description.surfaces.front().material.roughness = static_cast<float>(roughness);
         const shader shade(description);
-        const auto pixels = prepare(*light, description, table);
+        const auto pixels = prepare(*explicit_of(static_cast<float>(roughness)), description, table);
         reporter.advance();
         if (pixels.empty()) throw std::invalid_argument("the light reaches no pixel of the sphere");
         for (const double facets : options.facets) {
@@ -242,7 +247,8 @@ void compare_light(const compare_light_options& options) {
         }
     }
     description.surfaces.front().material.roughness = static_cast<float>(options.roughness.front());
-    draw_picture(description, *light, options.scene.log_density, output);
+    draw_picture(description, *explicit_of(static_cast<float>(options.roughness.front())), options.scene.log_density,
+                 output);
 
     const auto& lit = description.lights.front();
     if (options.scene.json) {

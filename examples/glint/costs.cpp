@@ -198,6 +198,9 @@ void costs(const costs_options& options) {
         sink = sink + glint_shade_pixels(&shaders[row], points.data(), points.size());
         return watch.seconds();
     };
+    // What is built at the first call is no cost of a pixel.
+    for (std::size_t row = 0; row < rows.size(); ++row)
+        sink = sink + shaders[row].smooth(visible.front(), rows[row].scene.surfaces.front()).g;
     if (options.counting) {
         for (std::size_t row = 0; row < rows.size(); ++row) pass(row);
         return;

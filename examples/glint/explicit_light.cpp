@@ -114,8 +114,8 @@ class explicit_environment : public explicit_light {
                     texels_.push_back({w, mica::texel_solid_angle(image.width, image.height, y), image.at(x, y)});
             }
     }
-    std::vector<beam> beams(const mica::shading_point<float>&, double) const override { return texels_; }
-    colour radiance(const mica::shading_point<float>&, double, vector w) const override {
+    std::vector<beam> beams(const mica::shading_point<float>&) const override { return texels_; }
+    colour radiance(const mica::shading_point<float>&, vector w) const override {
         return wall_.hides(w) ? colour{0, 0, 0} : map_(w);
     }
 
@@ -129,35 +129,31 @@ class explicit_environment : public explicit_light {
 /// around h, and then has the radiance that makes up the irradiance.
 class explicit_directional : public explicit_light {
   public:
-    explicit_directional(const light_description& light, wall occluder)
-        : towards_(mica::normalized(light.direction)), fraction_(static_cast<double>(light.glint_fraction)),
+    explicit_directional(const light_description& light, wall occluder, double roughness)
+        : towards_(mica::normalized(light.direction)),
+          area_(static_cast<double>(light.glint_fraction) * total_facet_area(roughness) * pi * roughness * roughness),
           irradiance_(occluder.hides(towards_) ? colour{0, 0, 0} : light.radiance) {}
 
-    std::vector<beam> beams(const mica::shading_point<float>& point, double roughness) const override {
+    std::vector<beam> beams(const mica::shading_point<float>& point) const override {
         std::vector<beam> all;
         if (!(dot(point.wo + towards_, point.wo) > 0)) return all;
         const vector h = mica::normalized(point.wo + towards_);
-        const double area = facet_solid_angle(roughness);
-        for_cone(h, area / (2 * pi), [&](vector normal, double solid_angle) {
+        for_cone(h, area_ / (2 * pi), [&](vector normal, double solid_angle) {
             const double cos = cosine(point.wo, normal);
             all.push_back(
-                {mica::reflected(point.wo, normal), 4 * cos * solid_angle, scaled(1 / (4 * cos * area), irradiance_)});
+                {mica::reflected(point.wo, normal), 4 * cos * solid_angle, scaled(1 / (4 * cos * area_), irradiance_)});
         });
         return all;
     }
-    colour radiance(const mica::shading_point<float>& point, double roughness, vector w) const override {
+    colour radiance(const mica::shading_point<float>& point, vector w) const override {
         const vector h = mica::normalized(point.wo + towards_), normal = mica::normalized(point.wo + w);
-        const double area = facet_solid_angle(roughness);
-        const bool flashes = cosine(h, normal) > 1 - area / (2 * pi);
-        return flashes ? scaled(1 / (4 * cosine(point.wo, normal) * area), irradiance_) : colour{0, 0, 0};
+        const bool flashes = cosine(h, normal) > 1 - area_ / (2 * pi);
+        return flashes ? scaled(1 / (4 * cosine(point.wo, normal) * area_), irradiance_) : colour{0, 0, 0};
     }
 
   private:
-    double facet_solid_angle(double roughness) const {
-        return fraction_ * total_facet_area(roughness) * pi * roughness * roughness;
-    }
     vector towards_;
-    double fraction_;
+    double area_; ///< A_h, steradians
     colour irradiance_;
 };
 
@@ -167,12 +163,12 @@ class explicit_sun : public explicit_light {
         : towards_(mica::normalized(light.direction)), depth_(1 - std::cos(static_cast<double>(light.half_angle))),
           radiance_(occluder.hides(towards_) ? colour{0, 0, 0} : light.radiance) {}
 
-    std::vector<beam> beams(const mica::shading_point<float>&, double) const override {
+    std::vector<beam> beams(const mica::shading_point<float>&) const override {
         std::vector<beam> all;
         for_cone(towards_, depth_, [&](vector w, double solid_angle) { all.push_back({w, solid_angle, radiance_}); });
         return all;
     }
-    colour radiance(const mica::shading_point<float>&, double, vector w) const override {
+    colour radiance(const mica::shading_point<float>&, vector w) const override {
         const vector apart = w - towards_; // 1 - cos = |w - t|^2 / 2
         return cosine(apart, apart) / 2 < depth_ ? radiance_ : colour{0, 0, 0};
     }
@@ -190,7 +186,7 @@ class explicit_area : public explicit_light {
         : centre_(centre), half_u_(half_u), half_v_(half_v), normal_(mica::normalized(mica::cross(half_u, half_v))),
           disk_(disk), radiance_(occluder.hides(centre) ? colour{0, 0, 0} : radiance) {}
 
-    std::vector<beam> beams(const mica::shading_point<float>& point, double) const override {
+    std::vector<beam> beams(const mica::shading_point<float>& point) const override {
         constexpr int side = 192;
         const double cell =
             4 * std::sqrt(cosine(mica::cross(half_u_, half_v_), mica::cross(half_u_, half_v_))) / (side * side);
@@ -207,7 +203,7 @@ class explicit_area : public explicit_light {
             }
         return all;
     }
-    colour radiance(const mica::shading_point<float>& point, double, vector w) const override {
+    colour radiance(const mica::shading_point<float>& point, vector w) const override {
         const double facing = -cosine(w, normal_), distance = -cosine(centre_ - point.position, normal_) / facing;
         if (!(facing > 0 && distance > 0)) return {0, 0, 0};
         const vector across = point.position + static_cast<float>(distance) * w - centre_;
@@ -226,9 +222,10 @@ class explicit_area : public explicit_light {
 } // namespace
 
 std::unique_ptr<explicit_light> make_explicit_light(const light_description& light,
-                                                    const std::optional<vector>& occluder) {
+                                                    const std::optional<vector>& occluder, float roughness) {
     const wall hidden{occluder};
-    if (light.type == "directional") return std::make_unique<explicit_directional>(light, hidden);
+    if (light.type == "directional")
+        return std::make_unique<explicit_directional>(light, hidden, static_cast<double>(roughness));
     if (light.type == "sun") return std::make_unique<explicit_sun>(light, hidden);
     if (light.type == "disk") {
         const vector normal = mica::normalized(light.normal), first = any_perpendicular(normal);
@@ -357,12 +354,12 @@ double facet_normals::tangent(double uniform) const {
 colour facet_radiance(const explicit_light& light, const mica::shading_point<float>& point,
                       const mica::glint_material& material, double total_area, vector h) {
     const vector w = mica::reflected(point.wo, h);
-    const double alpha = static_cast<double>(material.roughness);
-    return radiance_of_facet(point, material, total_area, h, w, [&] { return light.radiance(point, alpha, w); });
+    return radiance_of_facet(point, material, total_area, h, w, [&] { return light.radiance(point, w); });
 }
 
 radiance_picture picture_of_facets(const scene& seen, const explicit_light& light, const surface_description& surface,
                                    std::uint32_t seed) {
+    constexpr int enough_facets = 4000;
     const auto& material = surface.material;
     const auto per_side = static_cast<std::size_t>(std::exp(static_cast<double>(material.log_density) / 2));
     const mica::reference::facet_set facets(per_side, mica::reference::facet_positions::jittered, seed);
@@ -380,13 +377,26 @@ radiance_picture picture_of_facets(const scene& seen, const explicit_light& ligh
             const double trials = facets.density() * static_cast<double>(mica::make_footprint(point.derivatives).area);
             const vector bitangent = mica::cross(point.normal, point.tangent);
             colour sum{0, 0, 0};
-            const auto add = [&](const mica::reference::facet& f) {
-                // Its slopes are standard normal: their direction is uniform, and exp(-r^2/2) is.
-                const double r = std::hypot(f.slope_u, f.slope_v);
+            const auto add_slopes = [&](double slope_u, double slope_v) {
+                // They are standard normal: their direction is uniform, and exp(-r^2/2) is.
+                const double r = std::hypot(slope_u, slope_v);
                 const double t = normals.tangent(-std::expm1(-r * r / 2)) / r;
-                const vector h = mica::normalized(static_cast<float>(t * f.slope_u) * point.tangent +
-                                                  static_cast<float>(t * f.slope_v) * bitangent + point.normal);
+                const vector h = mica::normalized(static_cast<float>(t * slope_u) * point.tangent +
+                                                  static_cast<float>(t * slope_v) * bitangent + point.normal);
                 sum = sum + facet_radiance(light, point, material, area, h);
+            };
+            if (trials > enough_facets) { // towards a horizon there is no end of them
+                std::mt19937 random(mica::hash(seed, static_cast<std::uint32_t>(y * width + x)));
+                std::normal_distribution<double> slope;
+                for (int i = 0; i < enough_facets; ++i) {
+                    const double slope_u = slope(random);
+                    add_slopes(slope_u, slope(random));
+                }
+                picture.pixels[y * width + x] = (1.F / enough_facets) * sum;
+                continue;
+            }
+            const auto add = [&](const mica::reference::facet& f) {
+                add_slopes(f.slope_u, f.slope_v);
                 return false;
             };
             facets.count({static_cast<double>(point.uv.u), static_cast<double>(point.uv.v),

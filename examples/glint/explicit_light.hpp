@@ -26,14 +26,15 @@ class explicit_light {
     virtual ~explicit_light() = default;
 
     /// All of it, in beams narrower than any glint lobe that is compared (an environment: its texels).
-    virtual std::vector<beam> beams(const mica::shading_point<float>& point, double roughness) const = 0;
+    virtual std::vector<beam> beams(const mica::shading_point<float>& point) const = 0;
 
     /// What comes from one direction.
-    virtual colour radiance(const mica::shading_point<float>& point, double roughness, vector towards) const = 0;
+    virtual colour radiance(const mica::shading_point<float>& point, vector towards) const = 0;
 };
 
+/// A directional light has facets of the size that DB23's probability says, which depends on the roughness.
 std::unique_ptr<explicit_light> make_explicit_light(const light_description& light,
-                                                    const std::optional<vector>& occluder);
+                                                    const std::optional<vector>& occluder, float roughness);
 
 /// What a facet of a pixel may do: flash towards a beam, with a probability, which gives the pixel radiance / N.
 struct outcome {
@@ -98,7 +99,7 @@ colour facet_radiance(const explicit_light& light, const mica::shading_point<flo
 double total_facet_area(double roughness);
 
 /// A picture whose pixels add up the facets in their ellipses, at fixed places on the surface: exp(log density) of them per
-/// unit uv^2, which should be below 1e7.
+/// unit uv^2, which should be below 1e7. A pixel with more than 4000 of them shows as many other ones.
 radiance_picture picture_of_facets(const scene& seen, const explicit_light& light, const surface_description& surface,
                                    std::uint32_t seed);
 

@@ -52,7 +52,8 @@ frame rendered(const scene_description& description, std::size_t tile) {
 }
 
 radiance_picture explicit_facets(const scene_description& description, std::size_t tile) {
-    const auto light = make_explicit_light(description.lights.front(), description.occluder);
+    const auto light = make_explicit_light(description.lights.front(), description.occluder,
+                                           description.surfaces.front().material.roughness);
     return picture_of_facets(tile_scene(description, tile), *light, description.surfaces.front(), description.seed);
 }
 
@@ -65,10 +66,12 @@ radiance_picture mean_of(const scene_description& description, std::size_t tile,
         for (std::size_t x = 0; x < tile; ++x) {
             const auto hit = seen.surface(x, y);
             if (!hit) continue;
+            const auto& surface = seen.surfaces()[hit->surface];
+            const auto light = shade.illuminate(hit->point, surface);
             vector sum{0, 0, 0};
             for (int i = 0; i < realisations; ++i) {
-                const auto radiance = shade(hit->point, seen.surfaces()[hit->surface],
-                                            mica::hash(description.seed, static_cast<std::uint32_t>(i)));
+                const auto radiance =
+                    shade(hit->point, surface, light, mica::hash(description.seed, static_cast<std::uint32_t>(i)));
                 sum = sum + vector{radiance.glint.r, radiance.glint.g, radiance.glint.b};
             }
             const float share = 1 / static_cast<float>(realisations);

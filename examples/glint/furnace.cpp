@@ -59,6 +59,7 @@ constexpr float grazing_below = 0.25F;
 /// A pixel of the sphere, and its brightness without glints.
 struct lit_pixel {
     mica::shading_point<float> point;
+    shader::illumination light;
     double smooth;
 };
 
@@ -80,7 +81,7 @@ lit_pixels lit_by(const shader& shade, const scene& seen) {
         if (!hit) continue;
         const auto smooth = static_cast<double>(luminance(shade.smooth(hit->point, seen.surfaces()[0])));
         if (!(smooth > 0)) continue;
-        const lit_pixel pixel{hit->point, smooth};
+        const lit_pixel pixel{hit->point, shade.illuminate(hit->point, seen.surfaces()[0]), smooth};
         const auto footprint = static_cast<double>(mica::make_footprint(hit->point.derivatives).area);
         area += footprint;
         lit.flashes_at_zero +=
@@ -115,7 +116,7 @@ std::vector<furnace_row> furnace_rows(const furnace_light& light, double facets,
     constexpr std::size_t batch = 64, most = 16384;
     // Below one facet per pixel the variance has no bound; the demand there grows with the standard error.
     const double wanted = facets >= 1 ? options.precision : 3 * options.precision;
-    const bool has_grazing = lit.grazing_smooth > 0.01 * lit.smooth;
+    const bool has_grazing = lit.grazing_smooth > 0.1 * lit.smooth;
     const auto precise = [&] {
         return all.standard_error() <= wanted && (!has_grazing || at_grazing.standard_error() <= wanted);
     };
@@ -124,7 +125,7 @@ std::vector<furnace_row> furnace_rows(const furnace_light& light, double facets,
         tbb::parallel_for(std::size_t{0}, batch, [&](std::size_t i) {
             const std::uint32_t seed = mica::hash(first_seed, static_cast<std::uint32_t>(all.count + i));
             for (const auto& pixel : lit.pixels) {
-                const auto glint = static_cast<double>(luminance(shade(pixel.point, surface, seed).glint));
+                const auto glint = static_cast<double>(luminance(shade(pixel.point, surface, pixel.light, seed).glint));
                 sums[i][0] += glint;
                 if (grazing(pixel)) sums[i][1] += glint;
             }

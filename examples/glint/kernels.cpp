@@ -126,7 +126,8 @@ constexpr bool is_one_of(auto law) {
 } // namespace
 
 compiled_kernel find_kernel(const counting_description& counting, std::size_t classes) {
-    const auto& [law_name, interpolate, softness, effects] = counting;
+    const std::string &law_name = counting.law, &interpolate = counting.interpolate;
+    const double softness = counting.softness;
     if (!(softness >= 0 && softness < 1))
         throw std::invalid_argument("--softness " + std::to_string(softness) + " is not in [0, 1)");
     if (interpolate != "variates" && interpolate != "counts")
@@ -135,7 +136,7 @@ compiled_kernel find_kernel(const counting_description& counting, std::size_t cl
         throw std::invalid_argument("--softness is for --interpolate variates");
     return with_law(law_name, [&](auto law) {
         using Law = decltype(law);
-        if (effects.any()) return with_effects(counting, classes);
+        if (counting.effects.any()) return with_effects(counting, classes);
         if (softness > 0) {
             if constexpr (is_one_of<mica::quantile_binomial<4>, mica::quantile_binomial<8>>(Law{}))
                 return kernel_of<Law>(classes, mica::softened_variates{static_cast<float>(softness)});

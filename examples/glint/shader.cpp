@@ -213,9 +213,14 @@ shader::illumination shader::illuminate(const mica::shading_point<float>& point,
 }
 
 mica::glint_radiance<float> shader::operator()(const mica::shading_point<float>& point,
+                                               const surface_description& surface, const illumination& light,
+                                               std::uint32_t seed) const {
+    return kernel_.shade(point, surface.material, {light.classes.data(), classes_}, light.half_vector, seed);
+}
+
+mica::glint_radiance<float> shader::operator()(const mica::shading_point<float>& point,
                                                const surface_description& surface, std::uint32_t seed) const {
-    const auto all = illuminate(point, surface);
-    return kernel_.shade(point, surface.material, {all.classes.data(), classes_}, all.half_vector, seed);
+    return (*this)(point, surface, illuminate(point, surface), seed);
 }
 
 mica::rgb<float> shader::smooth(const mica::shading_point<float>& point, const surface_description& surface) const {

@@ -40,7 +40,18 @@ class shader {
   public:
     explicit shader(const scene_description& description);
 
+    static constexpr std::size_t most_classes = 8;
+
+    /// What shines on a pixel, the same in all realisations.
+    struct illumination {
+        std::array<mica::light_class<float>, most_classes> classes{};
+        mica::vector3<float> half_vector;
+    };
+    illumination illuminate(const mica::shading_point<float>& point, const surface_description& surface) const;
+
     /// The radiance of a pixel of one realisation.
+    mica::glint_radiance<float> operator()(const mica::shading_point<float>& point, const surface_description& surface,
+                                           const illumination& light, std::uint32_t seed) const;
     mica::glint_radiance<float> operator()(const mica::shading_point<float>& point, const surface_description& surface,
                                            std::uint32_t seed) const;
 
@@ -61,15 +72,6 @@ class shader {
     std::size_t binomials_per_pixel() const { return kernel_.binomials(categories_); }
 
   private:
-    static constexpr std::size_t most_classes = 8;
-
-    /// What shines on a pixel.
-    struct illumination {
-        std::array<mica::light_class<float>, most_classes> classes{};
-        mica::vector3<float> half_vector;
-    };
-    illumination illuminate(const mica::shading_point<float>& point, const surface_description& surface) const;
-
     std::vector<std::unique_ptr<light_source>> lights_;
     std::size_t classes_ = 0, categories_ = 0;
     compiled_kernel kernel_;

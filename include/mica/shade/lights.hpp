@@ -225,8 +225,9 @@ class contour_area {
         const Real a2 = clamp(t / maximum(q, Real(1e-20F)), least_, most_);
         const Real w = mica::sqrt(Real(1) + t);
         using shape = typename Facets::shape;
-        const Real area = mica::select(beyond, -shape::beyond(a2, q, w) / maximum(q, Real(1e-20F)),
-                                       shape::within_over_square(a2, q, w));
+        Real area = Real(0);
+        if (!all(beyond)) area = shape::within_over_square(a2, q, w);
+        if (any(beyond)) area = mica::select(beyond, -shape::beyond(a2, q, w) / maximum(q, Real(1e-20F)), area);
         return area * (x * change.y - y * change.x) * inverse_z * inverse_x_ * inverse_y_ * speed;
     }
 
