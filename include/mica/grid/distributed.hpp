@@ -54,15 +54,15 @@ struct interpolated_counts {
     static constexpr std::size_t evaluations = Vertices::seeds;
 };
 
-/// The expected count given part of the blended randomness: real counts without jumps, of the same mean. softness in
-/// [0, 1) is the standard deviation of what is averaged over. For laws that have a function `softened`, quantile_binomial
-/// among them, which says how much of the variance is left.
+/// The expected count given part of the blended randomness: real counts without jumps, of the same mean. For laws that have
+/// a function `softened`, quantile_binomial among them, which says how much of the variance is left.
 struct softened_variates {
-    float softness = 0.1F;
+    float softness = 0.1F; ///< in [0, 1), the standard deviation of what is averaged over; 0 is blended_variates
 
     template <class Vertices, class Draw>
     MICA_HOST_DEVICE constexpr auto operator()(const Vertices& vertices, std::uint32_t light, const Draw& draw) const {
         using Real = typename Vertices::number;
+        if (!(softness > 0)) return blended_variates{}(vertices, light, draw);
         return draw(vertices.trials, known_part<Real, blended_uniforms<const Vertices&>>{
                                          blended_uniforms(vertices, light), Real(softness)});
     }

@@ -8,7 +8,7 @@
 //     c_k  = S_k, but the last one, where it has a tail beyond it (M > G):
 //            S_(G-1) - pmf_G (1 - h^4) / 12  + bend,   h = max(0, G + 1/4 - N p) / (0.7 (G + 1))
 //     bend = f (1-f) p^2 pmf_(G-1) / 2 for N > G + 1, pmf that of m trials, else 0
-//     g(z) = min(N, N p + s z + d (z^2-1)/6 + z [1 + 14w - (1+2w) z^2] / (72 s)),   z in [-3s, (4+5d) s]
+//     g(z) = clamp(N p + s z + d (z^2-1)/6 + z [1 + 14w - (1+2w) z^2] / (72 s), 0, N),   z in [-3s, (4+5d) s]
 //     n    = (1-f) A_m + f A_(m+1) + clamp(N - G, 0, 1) max(0, g - G);   g at G + 1 trials where N is below that
 //
 // A_(m+1) comes almost free from the recursion for m trials: pmf_k(m+1) = q pmf_k + p pmf_(k-1), S_k(m+1) = S_k + p
@@ -17,9 +17,9 @@
 // last gate; h fades that where N p is small and g poor (a fit, for all G). That tail is evaluated once, at real N; it
 // lies below the interpolated one by half its second difference in N, which is p^2 pmf_(G-1): the bend.
 //
-// For N > G and p from 0.45 to 0.5, n is blended into clamp(g, 0, N), symmetric at p = 1/2, so that there is no seam
-// where successes and failures change places. p > 1/2 evaluates the failures at 1 - xi. N < 1 has one ramp for a
-// success at N p and one for a failure at 1 - N q.
+// For N > G and p from 0.45 to 0.5, n is blended into g, symmetric at p = 1/2, so that there is no seam where successes
+// and failures change places. p > 1/2 evaluates the failures at 1 - xi. N < 1 has one ramp for a success at N p and one
+// for a failure at 1 - N q.
 //
 // Source: mica's own.
 // Draws: one uniform.
@@ -71,7 +71,7 @@ MICA_HOST_DEVICE constexpr Real smooth_expansion(Real m, Real p, Real z) {
     const Real x2 = x * x;
     const Real skewness = d * (x2 - Real(1)) * Real(Scalar(1) / 6);
     const Real kurtosis = x * (Real(1) + Real(14) * w - (Real(1) + Real(2) * w) * x2) / (Real(72) * s);
-    return minimum(m, m * p + s * x + (skewness + kurtosis));
+    return clamp(m * p + s * x + (skewness + kurtosis), Real(0), m);
 }
 
 /// N between the whole numbers of trials next to it, at least 1, and what the recursions of both start from.
@@ -135,6 +135,23 @@ MICA_HOST_DEVICE constexpr pair_of<Real> passed_gates(Real n, Real p, const whol
     return {minimum(passed.first, trials.whole), passed.second};
 }
 
+/// The trials of which the tail beyond the gates is taken. Between G and G + 1 only the larger neighbour has a tail.
+template <int Gates, real_number Real>
+MICA_HOST_DEVICE constexpr Real trials_with_tail(Real n) {
+    return maximum(n, Real(scalar_of<Real>(Gates) + 1));
+}
+
+/// The passed gates (`at_next` those of floor N + 1 trials) and the tail beyond them; near p = 1/2 the expansion that has
+/// the tail, whole.
+template <int Gates, real_number Real>
+MICA_HOST_DEVICE constexpr Real with_tail(Real n, Real p, Real gated, Real at_next, Real beyond, Real expansion) {
+    constexpr scalar_of<Real> gates = Gates;
+    const Real weight = clamp(n - Real(gates), Real(0), Real(1));
+    const Real blend = clamp((p - Real(0.45F)) * Real(20), Real(0), Real(1));
+    const Real replaced = select(n < Real(gates + 1), at_next, gated) + beyond;
+    return minimum(gated + weight * (beyond + blend * (expansion - replaced)), n);
+}
+
 /// N <= 1: the rarer outcome, nothing, the other, with probabilities N p, 1 - N, N q.
 template <real_number Real>
 MICA_HOST_DEVICE constexpr pair_of<Real> lone_facet(Real n, const rarer_side<Real>& side) {
@@ -176,16 +193,9 @@ struct smooth_quantile_binomial {
             });
         const Real gated = at_whole + part * (at_next - at_whole);
 
-        // Between G and G + 1 only the larger neighbour has a tail.
-        const auto below_next = n < Real(gates + 1);
-        const Real m = maximum(n, Real(gates + 1));
-        const Real weight = clamp(n - Real(gates), Real(0), Real(1));
-        const Real expansion = detail::smooth_expansion(m, p, side.variate.z);
+        const Real expansion = detail::smooth_expansion(detail::trials_with_tail<Gates>(n), p, side.variate.z);
         const Real beyond = maximum(Real(0), expansion - Real(gates));
-        const Real blend = clamp((p - Real(0.45F)) * Real(20), Real(0), Real(1));
-        const Real replaced = select(below_next, at_next, gated) + beyond;
-        const Real unlimited = gated + weight * (beyond + blend * (maximum(expansion, Real(0)) - replaced));
-        const Real drawn = minimum(unlimited, n);
+        const Real drawn = detail::with_tail<Gates>(n, p, gated, at_next, beyond, expansion);
 
         const auto below_one = n < Real(1);
         const auto [lone_rarer, lone_other] = detail::lone_facet(minimum(n, Real(1)), side);
