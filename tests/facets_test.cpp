@@ -37,7 +37,7 @@ class random_footprints {
 
 class Facets : public ::testing::TestWithParam<std::pair<double, double>> {}; // facets, ratio
 
-// Var(flashes - n p) given n facets is n p q, their third lens P(0) is q^n.
+// Given that there are n facets, n p of them flash on average, with variance n p q, and none does with probability q^n.
 TEST_P(Facets, FlashAsTheirBinomial) {
     const auto [facets, ratio] = GetParam();
     for (const auto positions : {facet_positions::uniform, facet_positions::jittered})

@@ -20,6 +20,9 @@
 
 namespace mica {
 
+/// The lights of a pixel are numbered up to this. The streams beyond are those of the pixel itself: its density, its tints.
+inline constexpr std::uint32_t largest_light = 0xfffffeffU;
+
 /// One evaluation, with the blended randomness of the vertices.
 struct blended_variates {
     template <class Vertices, class Draw>
@@ -80,8 +83,19 @@ struct softened_variates {
     };
 };
 
-/// The number of successes in a pixel, with mean N p. `light` tells the lights of a pixel apart, whose counts are
-/// independent. Where the grids do not resolve the pixel the count is its mean.
+namespace detail {
+
+/// What is counted where the grids do not resolve the pixel. Arguments outside the domain as laws take them.
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real mean_successes(Real trials, Real probability) {
+    const auto [n, p] = in_domain(trials, probability);
+    return n * p;
+}
+
+} // namespace detail
+
+/// The number of successes in a pixel, with mean N p; N and p as in binomial_law.hpp. `light`, at most largest_light, tells
+/// the lights of a pixel apart, whose counts are independent. Where the grids do not resolve the pixel the count is its mean.
 template <class Law, class Interpolation = blended_variates>
 struct distributed_binomial {
     [[no_unique_address]] Interpolation interpolation{};
@@ -90,10 +104,11 @@ struct distributed_binomial {
         requires(binomial_law<Law, Real>)
     MICA_HOST_DEVICE constexpr Real operator()(const grid_vertices<Real, HalfVectors, Grids>& vertices,
                                                std::type_identity_t<Real> probability, std::uint32_t light = 0) const {
+        MICA_ASSERT(light <= largest_light);
         const auto drawn = interpolation(vertices, light, [&](Real trials, auto&& xi) {
             return std::array<Real, 1>{detail::drawn_counts<Law>(trials, probability, xi).successes};
         });
-        return select(vertices.resolved, drawn[0], vertices.trials * probability);
+        return select(vertices.resolved, drawn[0], detail::mean_successes(vertices.trials, probability));
     }
 };
 
@@ -107,24 +122,28 @@ struct distributed_multinomial {
     MICA_HOST_DEVICE constexpr std::array<Real, K> operator()(const grid_vertices<Real, HalfVectors, Grids>& vertices,
                                                               const std::array<Real, K>& probabilities,
                                                               std::uint32_t light = 0) const {
+        MICA_ASSERT(light <= largest_light);
         auto drawn = interpolation(
             vertices, light, [&](Real trials, auto&& xi) { return multinomial<K, Law>{}(trials, probabilities, xi); });
         for (std::size_t k = 0; k < K; ++k)
-            drawn[k] = select(vertices.resolved, drawn[k], vertices.trials * probabilities[k]);
+            drawn[k] = select(vertices.resolved, drawn[k], detail::mean_successes(vertices.trials, probabilities[k]));
         return drawn;
     }
 };
 
 /// The pixel with a density of facets that varies from place to place: trials times exp(s z - s^2 / 2), z standard normal,
-/// of which `deviation` s is the standard deviation of the logarithm. The mean is the same. z is limited to 4, which for s
-/// up to 1 takes less than 0.2 % off the mean. (DB23 Sec. 6.4 varies the density of every vertex; blended variates see
-/// the blend of the vertices' z.)
+/// of which `deviation` s is the standard deviation of the logarithm, in [0, 1] (outside as the nearer end, NaN as 0). The
+/// mean is the same. z is limited to 4, which takes less than 0.2 % off the mean. Where the grids do not resolve the pixel
+/// its trials stay what they are. (DB23 Sec. 6.4 varies the density of every vertex; blended variates see the blend of the
+/// vertices' z.)
 template <real_number Real, std::size_t HalfVectors, std::size_t Grids>
 MICA_HOST_DEVICE constexpr grid_vertices<Real, HalfVectors, Grids>
 with_varied_density(grid_vertices<Real, HalfVectors, Grids> vertices, std::type_identity_t<Real> deviation) {
-    constexpr std::uint32_t stream = 0xffffffffU; // no light has it
-    const auto factor = [deviation](Real z) {
-        return mica::exp(deviation * (clamp(z, Real(-4), Real(4)) - Real(0.5) * deviation));
+    constexpr std::uint32_t stream = 0xffffffffU;
+    static_assert(stream > largest_light);
+    const Real s = clamp(deviation, Real(0), Real(1));
+    const auto factor = [s, resolved = vertices.resolved](Real z) {
+        return select(resolved, mica::exp(s * (clamp(z, Real(-4), Real(4)) - Real(0.5) * s)), Real(1));
     };
     grid_vertices<Real, 0, Grids> surface{vertices.trials, vertices.resolved, {}};
     for (std::size_t g = 0; g < Grids; ++g) {

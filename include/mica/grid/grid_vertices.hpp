@@ -2,11 +2,13 @@
 //
 // Four grids share a pixel (tetrahedron.hpp); in each the pixel lies between three vertices (simplex.hpp), and under a
 // light from one direction each of these has four cells of half vectors (angular.hpp): 12 or 48 seeds. They are found once
-// per pixel and shared by all lights and categories that are counted in it.
+// per pixel and shared by all lights and categories that are counted in it; of lights from several directions the cells of
+// half vectors alone are found for each (with_half_vector).
 //
 // Domain, in binary32: footprints of ratio up to 2^16 (2^18 orientations, told apart to 1/16), levels -40 .. 40 (cells
-// 2^-40 .. 2^40 uv wide), and uv within 2^18 cells of the origin (placed to 1/64 of a cell). Beyond, `resolved` is false,
-// and what is counted is the mean: the smooth surface.
+// 2^-40 .. 2^40 uv wide), uv within 2^18 cells of the origin (placed to 1/6 of a cell at the edge, rms 1/48, and in
+// proportion to the distance within: 1/48 at 2^15), half vectors within 2^18 of their cells (to 1/64). Beyond and for NaN
+// `resolved` is false, and what is counted is the mean: the smooth surface.
 #pragma once
 
 #include "angular.hpp"
@@ -31,7 +33,7 @@ struct pixel_grid {
     std::array<grid_vertex<Real, HalfVectors>, 3> vertices;
 };
 
-/// The vertices of a pixel.
+/// The vertices of a pixel. `trials` are kept as they come; what counts takes them as a law does (binomial_law.hpp).
 template <real_number Real, std::size_t HalfVectors = 0, std::size_t Grids = 4>
 struct grid_vertices {
     using number = Real;
@@ -68,7 +70,8 @@ inline constexpr float default_footprint_scale = 1.4F;
 /// Footprints of a larger ratio are not resolved.
 inline constexpr float largest_grid_ratio = 0x1p16F;
 
-/// Pixels farther from the origin of uv, in widths of the footprint, are not resolved.
+/// Pixels farther from the origin of uv, in widths of the footprint, are not resolved; nor are half vectors farther from
+/// theirs, in facet roughnesses.
 inline constexpr float largest_distance = 0x1p18F;
 
 namespace detail {
@@ -81,21 +84,14 @@ MICA_HOST_DEVICE constexpr auto inverse_norm(const Vertices& vertices) {
     return inverse_sqrt_in<2>(squares); // 5e-6
 }
 
-/// A light from no direction in particular.
-struct no_half_vector {};
-
-template <class HalfVector>
-inline constexpr std::size_t cells_per_vertex = std::is_same_v<HalfVector, no_half_vector> ? 0 : 4;
-
-template <std::size_t Grids, real_number Real, class HalfVector>
-MICA_HOST_DEVICE constexpr auto
+template <std::size_t Grids, real_number Real>
+MICA_HOST_DEVICE constexpr grid_vertices<Real, 0, Grids>
 vertices_of_grids(const std::array<tetrahedron_vertex<Real>, Grids>& grids, const footprint<Real>& pixel,
-                  uv_point<Real> uv, HalfVector half_vector, Real trials, std::uint32_t seed, Real footprint_scale) {
+                  uv_point<Real> uv, Real trials, std::uint32_t seed, Real footprint_scale) {
     using Index = index_of<Real>;
-    constexpr std::size_t half_vectors = cells_per_vertex<HalfVector>;
     const Real level = footprint_level(pixel, footprint_scale);
     const Real farthest = maximum(mica::abs(uv.u), mica::abs(uv.v));
-    grid_vertices<Real, half_vectors, Grids> result;
+    grid_vertices<Real, 0, Grids> result;
     result.trials = trials;
     result.resolved = pixel.ratio <= Real(largest_grid_ratio) && level >= Real(smallest_level) &&
                       level <= Real(largest_level) &&
@@ -116,10 +112,6 @@ vertices_of_grids(const std::array<tetrahedron_vertex<Real>, Grids>& grids, cons
             vertex.seed = seeds[c];
             vertex.trials = trials * grids[g].share;
             vertex.weight = vertex.variate_weight = corners[c].weight;
-            if constexpr (half_vectors > 0) {
-                find_enclosing_square(half_vector, seeds[c], vertex.cells);
-                vertex.variate_weight = corners[c].weight * inverse_norm(vertex.cells);
-            }
         }
     }
     return result;
@@ -149,30 +141,58 @@ template <real_number Real>
 MICA_HOST_DEVICE constexpr grid_vertices<Real>
 make_grid_vertices(const footprint<Real>& pixel, uv_point<Real> uv, std::type_identity_t<Real> trials,
                    std::uint32_t seed, std::type_identity_t<Real> footprint_scale = Real(default_footprint_scale)) {
-    return detail::vertices_of_grids(enclosing_tetrahedron(pixel, footprint_scale), pixel, uv, detail::no_half_vector{},
-                                     trials, seed, footprint_scale);
+    return detail::vertices_of_grids(enclosing_tetrahedron(pixel, footprint_scale), pixel, uv, trials, seed,
+                                     footprint_scale);
 }
 
-/// The same under a light from one direction: vertices of the surface and of half vectors.
+/// The vertices of a pixel under a light from one direction: every vertex of the surface with its cells of half vectors.
+/// Lights from several directions share the surface's vertices, which take most of the time.
+template <real_number Real, std::size_t Grids>
+MICA_HOST_DEVICE constexpr grid_vertices<Real, 4, Grids> with_half_vector(const grid_vertices<Real, 0, Grids>& surface,
+                                                                          half_vector_point<Real> half_vector) {
+    grid_vertices<Real, 4, Grids> result;
+    result.trials = surface.trials;
+    result.resolved =
+        surface.resolved && maximum(mica::abs(half_vector.x), mica::abs(half_vector.y)) <= Real(largest_distance);
+    for (std::size_t g = 0; g < Grids; ++g) {
+        result.grids[g].variate_weight = surface.grids[g].variate_weight;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const auto& from = surface.grids[g].vertices[c];
+            auto& to = result.grids[g].vertices[c];
+            to.seed = from.seed;
+            to.trials = from.trials;
+            to.weight = from.weight;
+            find_enclosing_square(half_vector, from.seed, to.cells);
+            to.variate_weight = from.variate_weight * detail::inverse_norm(to.cells);
+        }
+    }
+    return result;
+}
+
+/// The same from the footprint on.
 template <real_number Real>
 MICA_HOST_DEVICE constexpr grid_vertices<Real, 4>
 make_grid_vertices(const footprint<Real>& pixel, uv_point<Real> uv, half_vector_point<Real> half_vector,
                    std::type_identity_t<Real> trials, std::uint32_t seed,
                    std::type_identity_t<Real> footprint_scale = Real(default_footprint_scale)) {
-    return detail::vertices_of_grids(enclosing_tetrahedron(pixel, footprint_scale), pixel, uv, half_vector, trials,
-                                     seed, footprint_scale);
+    return with_half_vector(make_grid_vertices(pixel, uv, trials, seed, footprint_scale), half_vector);
 }
 
 /// The vertices of one of the four grids, with all the trials: a quarter of the work, for interpolated counts, whose mean
 /// it leaves. `choice` is a uniform in (0,1) that picks the grid; as one per pixel it trades the blend between grids for
 /// noise.
+///
+/// A grid is picked with the probability of its share w a / sum w a of the trials, a the area of its cells, where choosing
+/// a vertex of the tetrahedron at random suggests its barycentric weight w, as DB23 blends. The mean is N p by either, but
+/// of what the four together show a grid has its share, and so the frames average to that picture: of two levels the
+/// larger has four times as many facets in a cell.
 template <real_number Real>
 MICA_HOST_DEVICE constexpr grid_vertices<Real, 0, 1>
 make_one_grid_vertices(const footprint<Real>& pixel, uv_point<Real> uv, std::type_identity_t<Real> trials,
                        std::uint32_t seed, std::type_identity_t<Real> choice,
                        std::type_identity_t<Real> footprint_scale = Real(default_footprint_scale)) {
     return detail::vertices_of_grids(detail::chosen_grid(enclosing_tetrahedron(pixel, footprint_scale), choice), pixel,
-                                     uv, detail::no_half_vector{}, trials, seed, footprint_scale);
+                                     uv, trials, seed, footprint_scale);
 }
 
 /// The same under a light from one direction.
@@ -181,8 +201,7 @@ MICA_HOST_DEVICE constexpr grid_vertices<Real, 4, 1>
 make_one_grid_vertices(const footprint<Real>& pixel, uv_point<Real> uv, half_vector_point<Real> half_vector,
                        std::type_identity_t<Real> trials, std::uint32_t seed, std::type_identity_t<Real> choice,
                        std::type_identity_t<Real> footprint_scale = Real(default_footprint_scale)) {
-    return detail::vertices_of_grids(detail::chosen_grid(enclosing_tetrahedron(pixel, footprint_scale), choice), pixel,
-                                     uv, half_vector, trials, seed, footprint_scale);
+    return with_half_vector(make_one_grid_vertices(pixel, uv, trials, seed, choice, footprint_scale), half_vector);
 }
 
 } // namespace mica

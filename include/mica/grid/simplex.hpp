@@ -35,8 +35,8 @@ struct simplex_vertex {
     Real weight;           ///< barycentric, >= 0; the three sum to 1
 };
 
-/// Cells are numbered -2^20 .. 2^20, within which a float places a point to a sixteenth of a cell; everything farther out
-/// (and NaN) lies in the outermost one.
+/// Cells are numbered -2^20 .. 2^20, within which floats are a sixteenth of a cell apart; everything farther out (and NaN)
+/// lies in the outermost one.
 inline constexpr float largest_cell = 0x1p20F;
 
 namespace detail {

@@ -82,14 +82,18 @@ class facet_set {
     /// Facets per unit of uv^2.
     double density() const { return static_cast<double>(facets_.size()); }
 
-    /// Counts what an ellipse of any size, ratio and orientation holds; parts beyond the unit square see its repetitions.
+    /// Counts what an ellipse of any size, ratio and orientation holds; parts beyond the unit square see its repetitions. One
+    /// of rank one, or with NaN or infinity in it, holds nothing. One that reaches beyond 2^20 fails: nobody would wait for it.
     template <class Flashes>
     facet_counts count(const ellipse& seen, const Flashes& flashes) const {
         const double determinant = seen.du_dx * seen.dv_dy - seen.du_dy * seen.dv_dx;
         facet_counts result{0, 0};
-        if (!(std::abs(determinant) > 0)) return result;
         const double half_u = seen.radius * std::hypot(seen.du_dx, seen.du_dy);
         const double half_v = seen.radius * std::hypot(seen.dv_dx, seen.dv_dy);
+        const double farthest = (std::max)(std::abs(seen.u) + half_u, std::abs(seen.v) + half_v);
+        if (!(std::abs(determinant) > 0) || !std::isfinite(half_u + half_v + std::abs(seen.u) + std::abs(seen.v)))
+            return result;
+        if (!(farthest <= 0x1p20)) MICA_FAIL("ellipse", farthest, "within 2^20 of the origin");
         const double squares = static_cast<double>(per_side_);
         const auto square = [squares](double x) { return static_cast<std::ptrdiff_t>(std::floor(x * squares)); };
         for (std::ptrdiff_t j = square(seen.v - half_v); j <= square(seen.v + half_v); ++j) {
@@ -115,7 +119,7 @@ class facet_set {
 
     std::size_t square_of(const facet& f) const {
         const auto at = [this](double x) {
-            return std::min(static_cast<std::ptrdiff_t>(x * static_cast<double>(per_side_)), per_side_ - 1);
+            return (std::min)(static_cast<std::ptrdiff_t>(x * static_cast<double>(per_side_)), per_side_ - 1);
         };
         return static_cast<std::size_t>(at(f.v) * per_side_ + at(f.u));
     }

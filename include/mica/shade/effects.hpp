@@ -20,7 +20,7 @@ struct angular_grid {
 
 /// The density of facets varies from place to place: times exp(deviation z), mean kept (DB23 Sec. 6.4).
 struct varied_density {
-    float deviation = 0.5F; ///< of the density's logarithm, in [0, 1]
+    float deviation = 0.5F; ///< of the density's logarithm, in [0, 1], outside as the nearer end
 };
 
 /// Every glint has a colour of its own: times exp(strength z - strength^2 / 2) in each band, mean 1, z of the vertices, so
@@ -54,7 +54,8 @@ struct no_glints {};
 
 namespace detail {
 
-inline constexpr std::uint32_t tint_stream = 0xfffffffeU; ///< no light has it
+inline constexpr std::uint32_t tint_stream = 0xfffffffeU;
+static_assert(tint_stream > largest_light);
 
 /// The colour of the glints of a pixel that shows `flashes` of them.
 template <class Vertices>
