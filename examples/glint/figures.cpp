@@ -132,8 +132,8 @@ tiled_picture roughness_and_density(scene_description description) {
         const float root = roots[column % 3];
         material.log_density = densities[column / 3];
         material.roughness = root * root;
-        sheet.label_column(column, text_of("ln density %g", static_cast<double>(material.log_density)) +
-                                       text_of(", sqrt a %g", static_cast<double>(root)));
+        sheet.label_column(column, text_of("d %g", static_cast<double>(material.log_density)) +
+                                       text_of(" sqrt a %g", static_cast<double>(root)));
         float exposure = 1;
         for (std::size_t row = 0; row < std::size(ways); ++row) {
             const frame seen = rendered(with(description, ways[row]), sheet.tile());
@@ -189,7 +189,7 @@ tiled_picture plane_in_environment(scene_description description) {
 tiled_picture coloured_lamps(scene_description description) {
     auto& material = description.surfaces.front().material;
     material.roughness = 0.16F;
-    material.log_density = 12;
+    material.log_density = 13;
     const way ways[] = {published_8, local_8, by_colour_4};
     tiled_picture sheet(std::size(ways) + 2, 2, 200);
     const char* const lamps[] = {"lamps:6", "lamps:50"};
@@ -199,8 +199,8 @@ tiled_picture coloured_lamps(scene_description description) {
         float exposure = 1;
         for (std::size_t i = 0; i < std::size(ways); ++i) {
             const frame seen = rendered(with(description, ways[i]), sheet.tile());
-            exposure = exposure_of(seen);
-            if (i == 0) sheet.draw(0, row, seen.smooth, exposure);
+            exposure = 0.0015F * exposure_of(seen); // the glints are to show their colours
+            if (i == 0) sheet.draw(0, row, seen.smooth, 150 * exposure);
             sheet.label_column(i + 1, ways[i].name);
             sheet.draw(i + 1, row, seen.glint, exposure);
         }
@@ -226,7 +226,7 @@ tiled_picture plane_under_light(scene_description description, const char* publi
             sheet.label_column(column, text_of("ln density %g", static_cast<double>(densities[column])));
             const frame seen = rendered(description, sheet.tile());
             const auto wrong = difference(mean_of(description, sheet.tile(), realisations), seen.smooth);
-            const auto exposure = static_cast<float>(0.25 / seen.mean_smooth);
+            const float exposure = exposure_of(seen);
             sheet.draw(column, row, split(seen.glint, wrong), exposure);
         }
     }
@@ -253,7 +253,7 @@ tiled_picture drawn(const figure_options& options) {
     }
     if (options.number == 14) {
         light.type = "sun";
-        light.direction = {0.5F, 0.6F, -1};
+        light.direction = {0.2F, 0.42F, -1};
         return plane_under_light(description, "published_gated", {22, 27, 32}, options.realisations);
     }
     throw std::invalid_argument("figure " + std::to_string(options.number) +

@@ -161,7 +161,7 @@ inline mica::environment_map white_environment() {
     return mica::environment_map(width, height, std::vector<mica::rgb<float>>(width * height, {1, 1, 1}));
 }
 
-/// Three lamps of 2 degrees half angle, red, green and blue of equal luminance, so many degrees apart above the camera.
+/// Three lamps of 2.5 degrees half angle, red, green and blue of equal luminance, so many degrees apart above the camera.
 inline mica::environment_map lamps_environment(float degrees_apart) {
     constexpr std::size_t width = 1024, height = 512;
     constexpr float pi = std::numbers::pi_v<float>;
@@ -182,7 +182,7 @@ inline mica::environment_map lamps_environment(float degrees_apart) {
                 mica::direction_of({(static_cast<float>(x) + 0.5F) / width, (static_cast<float>(y) + 0.5F) / height});
             colour radiance{0.01F, 0.01F, 0.01F};
             for (std::size_t i = 0; i < 3; ++i)
-                if (dot(w, lamps[i]) > std::cos(2 / degrees_per_radian))
+                if (dot(w, lamps[i]) > std::cos(2.5F / degrees_per_radian))
                     radiance = (300 / luminance(colours[i])) * colours[i];
             texels.push_back(radiance);
         }
