@@ -18,7 +18,7 @@ struct compare_options {
     std::vector<double> probabilities = {0.002, 0.02, 0.2, 0.5};
     double precision = 0.0017; ///< standard error of mean_ratio to reach, and 4 times that of variance_ratio
     double most_samples = 1 << 18;
-    double footprint_scale = 1.4;
+    double footprint_scale = 1.25;
     std::uint32_t seed = 1;
     std::string output = "compare.png";
     bool json = false;

@@ -12,7 +12,7 @@ namespace glint {
 ///     {"size": [960, 540], "seed": 1, "law": "quantile", "interpolate": "variates", "softness": 0,
 ///      "camera": {"eye": [0, 0, 4], "target": [0, 0, 0], "field_of_view_degrees": 31},
 ///      "surfaces": [{"shape": "sphere", "centre": [0, 0, 0], "radius": 1, "roughness": 0.1, "roughness_across": 0.1,
-///                    "log_density": 13, "reflectance": [0.95, 0.93, 0.88], "distribution": "ggx", "glint_size": 1.4}],
+///                    "log_density": 13, "reflectance": [0.95, 0.93, 0.88], "distribution": "ggx", "glint_size": 1.25}],
 ///      "lights": [{"type": "environment", "file": "studio.hdr", "levels": 4, "classes": "brightness"},
 ///                 {"type": "sun", "direction": [1, 1, 1], "half_angle_degrees": 0.27, "radiance": [1e4, 1e4, 1e4]}],
 ///      "occluder": [1, 0, 0],

@@ -37,7 +37,7 @@ template <class Law, class Interpolation>
 void draw_frame(srgb_picture& picture, std::size_t left, std::size_t top, const camera& seen, std::uint32_t seed) {
     const auto footprint = mica::make_footprint(seen.derivatives());
     // Few and bright, and always the same facets per uv^2.
-    const float density = static_cast<float>(40 / std::exp2(2 * base_level)), probability = 0.01F;
+    const float density = static_cast<float>(40 / std::exp2(2 * base_level)), probability = 0.003F;
     const float trials = density * footprint.area;
     draw_patch(picture, left, top, frame_size, enlarged, 0.8F, [&](double x, double y) {
         const auto uv = seen.uv(x - frame_size / 2., y - frame_size / 2.);
@@ -56,7 +56,7 @@ void strips(const strips_options& options) {
         const char* name;
         camera first, step;
     };
-    const sequence sequences[] = {{"zoom out, an eighth of a level a frame", {base_level, 0, 0}, {0.125, 0, 0}},
+    const sequence sequences[] = {{"zoom out, a sixth of a level a frame", {base_level, 0, 0}, {1. / 6, 0, 0}},
                                   {"rotation, two degrees a frame", {base_level, 0, 0}, {0, 2. / 180, 0}},
                                   {"pan, half a pixel a frame", {base_level, 0, 0}, {0, 0, 0.5}}};
     std::size_t top = gap;

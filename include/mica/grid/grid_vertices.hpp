@@ -63,9 +63,9 @@ lane_of_vertices(const grid_vertices<Real, HalfVectors, Grids>& vertices, int i)
     return result;
 }
 
-/// Size of a glint, in pixels. With it the autocorrelation of blended variates is as wide as that of facets seen through the
-/// ellipse with semi-axes sigma, within a quarter where N p >= 1 (docs/grids.md); published is 1.5.
-inline constexpr float default_footprint_scale = 1.4F;
+/// Size of a glint, in pixels. With it the autocorrelation of blended variates falls to one half at 0.67 to 0.95 pixels, for
+/// all ratios, orientations and levels (tests/blended_test.cpp); published is 1.5, which is wider than a pixel.
+inline constexpr float default_footprint_scale = 1.25F;
 
 /// Footprints of a larger ratio are not resolved.
 inline constexpr float largest_grid_ratio = 0x1p16F;
