@@ -140,6 +140,12 @@ void register_kernels(const std::string& suite) {
     using four = std::integral_constant<std::size_t, 4>;
     using eight = std::integral_constant<std::size_t, 8>;
     using plain = mica::glint_kernel<law>;
+    register_pixel<Real>(suite + "smooth_4_without_kernel", [](const mica::shading_point<Real>& point) {
+        mica::rgb<Real> smooth{Real(0), Real(0), Real(0)};
+        for (const auto& one : mica::light_classes(point, material(), classes_of_sky<4>(), table()))
+            smooth = smooth + one.smooth;
+        return mica::glint_radiance<Real>{smooth, smooth};
+    });
     environment("smooth_4", mica::glint_kernel<mica::no_glints>{}, four{});
     environment("environment_4", plain{}, four{});
     environment("environment_8", plain{}, eight{});

@@ -8,6 +8,7 @@
 #include <mica/law/quantile.hpp>
 #include <mica/law/smooth_quantile.hpp>
 #include <mica/shade/environment_glints.hpp>
+#include <mica/shade/lights.hpp>
 
 template <class Law>
 __global__ void sample_binomials(const float* trials, const float* probabilities, float* successes, unsigned count) {
@@ -36,6 +37,8 @@ __global__ void count_glints(const mica::uv_derivatives<float>* derivatives, con
     const mica::glint_kernel<mica::quantile_binomial<4>, mica::blended_variates,
                              mica::effects<mica::angular_grid, mica::varied_density, mica::tinted_glints>>
         adorned{};
+    const auto sun = mica::respond(mica::sun_light{{0, 0, 1}, {1, 1, 1}}, point, mica::ggx<float>{0.1F, 0.2F}, {1, 1, 1});
+    classes[3] = {sun.smooth, sun.probability};
     radiance[i] = mica::luminance(plain(point, {}, classes, {0, 0, 1}, 1U).glint) +
                   mica::luminance(adorned(point, {}, classes, {0, 0, 1}, 1U).glint);
 }
