@@ -192,34 +192,41 @@ TEST(Blended, ExactBinomialStaysExactWithHalfVectors) {
 }
 
 // The joint law of four categories: means, variances and covariances of a multinomial.
-TEST(Blended, MultinomialsCovary) {
+/// All covariances of four categories, one missing to sum 1, over pixels of a shape, against those of the multinomial: within
+/// their own standard errors and half a percent.
+template <class Law>
+void expect_multinomial_covariances(const shape& s, const char* what) {
     constexpr std::size_t K = 4;
     const std::array<double, K> p{0.3, 0.05, 0.2, 0.1};
     std::array<number, K> probabilities;
     for (std::size_t k = 0; k < K; ++k) probabilities[k] = number(static_cast<float>(p[k]));
     constexpr double trials = 40;
-    for (const auto& s : shapes) {
-        std::array<std::array<double, K>, K> products{};
-        std::array<double, K> sums{};
-        constexpr int pixels = 1 << 16;
-        for (int i = 0; i < pixels; i += lanes) {
-            const auto pixel = pixel_of<number>(s, number(40.F), index_pack::iota(static_cast<std::uint32_t>(i)));
-            const auto counts = distributed_multinomial<K, exact_binomial>{}(pixel, probabilities);
-            for (int lane = 0; lane < lanes; ++lane)
-                for (std::size_t a = 0; a < K; ++a) {
-                    const double x = static_cast<double>(counts[a][lane]) - trials * p[a];
-                    sums[a] += x;
-                    for (std::size_t b = 0; b < K; ++b)
-                        products[a][b] += x * (static_cast<double>(counts[b][lane]) - trials * p[b]);
-                }
+    constexpr int pixels = 1 << 17;
+    std::array<std::array<statistics::running_moments, K>, K> products;
+    for (int i = 0; i < pixels; i += lanes) {
+        const auto pixel = pixel_of<number>(s, number(40.F), index_pack::iota(static_cast<std::uint32_t>(i)));
+        const auto counts = distributed_multinomial<K, Law>{}(pixel, probabilities);
+        for (int lane = 0; lane < lanes; ++lane)
+            for (std::size_t a = 0; a < K; ++a)
+                for (std::size_t b = a; b < K; ++b)
+                    products[a][b].add((static_cast<double>(counts[a][lane]) - trials * p[a]) *
+                                       (static_cast<double>(counts[b][lane]) - trials * p[b]));
+    }
+    for (std::size_t a = 0; a < K; ++a)
+        for (std::size_t b = a; b < K; ++b) {
+            const double truth = trials * (a == b ? p[a] * (1 - p[a]) : -p[a] * p[b]);
+            const auto& measured = products[a][b];
+            EXPECT_LE(std::abs(measured.mean() - truth), 4.5 * measured.standard_error() + 0.005 * std::abs(truth))
+                << what << ", categories " << a << ' ' << b;
+            EXPECT_LE(measured.standard_error(), 0.02 * trials * std::sqrt(p[a] * (1 - p[a]) * p[b] * (1 - p[b])));
         }
-        for (std::size_t a = 0; a < K; ++a)
-            for (std::size_t b = 0; b < K; ++b) {
-                const double truth = trials * (a == b ? p[a] * (1 - p[a]) : -p[a] * p[b]);
-                const double scale = trials * std::sqrt(p[a] * (1 - p[a]) * p[b] * (1 - p[b]));
-                // Standard error of a covariance: at most sqrt(3) scale / sqrt(n), with the kurtosis of N p = 2.
-                EXPECT_LE(std::abs(products[a][b] / pixels - truth), 5 * std::sqrt(3.) * scale / std::sqrt(pixels));
-            }
+}
+
+TEST(Blended, MultinomialsCovary) {
+    for (const auto& s : shapes) {
+        expect_multinomial_covariances<exact_binomial>(s, "exact");
+        expect_multinomial_covariances<mica::quantile_binomial<4>>(s, "quantile 4");
+        expect_multinomial_covariances<mica::quantile_binomial<8>>(s, "quantile 8");
     }
 }
 
@@ -473,25 +480,30 @@ TEST(Blended, GlintsAreAPixelLarge) {
 
 // Two cells apart no vertex is shared.
 TEST(Blended, TwoCellsApartPixelsAreIndependent) {
-    // Level 1 of a circle: cells of the larger of its two levels are 2^(level + 1 - 10) wide, in every direction.
-    const auto footprint = mica::make_footprint(derivatives_of<float>(1, 0, 0.5F));
-    const float cell = std::exp2(-9.F);
-    for (const float angle : {0.F, 1.F, 2.F}) {
-        statistics::running_covariance covariance;
-        constexpr int pixels = 40000;
-        for (std::uint32_t i = 0; i < pixels; ++i) {
-            uniform_stream<float> place(13, i);
-            const uv_point<float> uv{place(), place()};
-            const uv_point<float> apart{uv.u + 2.4F * cell * std::cos(angle), uv.v + 2.4F * cell * std::sin(angle)};
-            const auto one = mica::make_grid_vertices(footprint, uv, 50, 1U);
-            const auto other = mica::make_grid_vertices(footprint, apart, 50, 1U);
-            const double deviation = std::sqrt(50 * 0.1 * 0.9);
-            const distributed_binomial<mica::quantile_binomial<8>> count;
-            covariance.add((static_cast<double>(count(one, 0.1F)) - 5) / deviation,
-                           (static_cast<double>(count(other, 0.1F)) - 5) / deviation);
-        }
-        EXPECT_LE(std::abs(covariance.covariance()) * std::sqrt(1. * pixels), 4.5) << angle;
-    }
+    // The largest cells of a footprint are four glints wide along its pixels, so 10 and 20 pixels are two cells and more.
+    const distributed_binomial<mica::quantile_binomial<8>> count;
+    const double deviation = std::sqrt(50 * 0.1 * 0.9);
+    for (const float ratio : {1.F, 4.F, 16.F})
+        for (const float distance : {10.F, 20.F})
+            for (const float angle : {0.F, 1.F, 2.F}) {
+                const auto m = derivatives_of<float>(ratio, 0.3F, 0.5F);
+                const auto footprint = mica::make_footprint(m);
+                const float x = distance * std::cos(angle), y = distance * std::sin(angle);
+                statistics::running_covariance covariance;
+                constexpr int pixels = 20000;
+                for (std::uint32_t i = 0; i < pixels; ++i) {
+                    uniform_stream<float> place(13, i);
+                    const uv_point<float> uv{place(), place()};
+                    const uv_point<float> apart{uv.u + x * m.du_dx + y * m.du_dy, uv.v + x * m.dv_dx + y * m.dv_dy};
+                    covariance.add(
+                        (static_cast<double>(count(mica::make_grid_vertices(footprint, uv, 50, i), 0.1F)) - 5) /
+                            deviation,
+                        (static_cast<double>(count(mica::make_grid_vertices(footprint, apart, 50, i), 0.1F)) - 5) /
+                            deviation);
+                }
+                EXPECT_LE(std::abs(covariance.covariance()) * std::sqrt(1. * pixels), 3)
+                    << ratio << ' ' << distance << ' ' << angle;
+            }
 }
 
 /// In place, length a power of two.
