@@ -199,8 +199,8 @@ tiled_picture coloured_lamps(scene_description description) {
         float exposure = 1;
         for (std::size_t i = 0; i < std::size(ways); ++i) {
             const frame seen = rendered(with(description, ways[i]), sheet.tile());
-            exposure = 0.0015F * exposure_of(seen); // the glints are to show their colours
-            if (i == 0) sheet.draw(0, row, seen.smooth, 150 * exposure);
+            exposure = 0.02F * exposure_of(seen); // the glints are to show their colours
+            if (i == 0) sheet.draw(0, row, seen.smooth, 15 * exposure);
             sheet.label_column(i + 1, ways[i].name);
             sheet.draw(i + 1, row, seen.glint, exposure);
         }

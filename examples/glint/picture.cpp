@@ -85,17 +85,17 @@ mica::environment_map read_environment(const std::string& path) {
 
 void tone_map(const radiance_picture& from, float exposure, srgb_picture& to, std::size_t left, std::size_t top) {
     constexpr float white = 6;
-    const auto curve = [exposure](float radiance) {
-        const float x = std::min(exposure * radiance, 1e6F);
-        return srgb_byte(x * (1 + x / (white * white)) / (1 + x));
-    };
     for (std::size_t y = 0; y < from.height; ++y)
         for (std::size_t x = 0; x < from.width; ++x) {
             const auto& pixel = from.pixels[y * from.width + x];
             std::uint8_t* bytes = &to.bytes[3 * ((top + y) * to.width + left + x)];
-            bytes[0] = curve(pixel.r);
-            bytes[1] = curve(pixel.g);
-            bytes[2] = curve(pixel.b);
+            const float light = std::min(exposure * luminance(pixel), 1e6F);
+            // At most white, so that the brightest glint still has the colour of its light.
+            const float toned = std::min(light * (1 + light / (white * white)) / (1 + light), 1.F);
+            const float scale = light > 0 ? toned / luminance(pixel) : 0.F;
+            bytes[0] = srgb_byte(scale * pixel.r);
+            bytes[1] = srgb_byte(scale * pixel.g);
+            bytes[2] = srgb_byte(scale * pixel.b);
         }
 }
 

@@ -30,7 +30,7 @@ struct srgb_picture {
 /// format, or not twice as wide as high.
 mica::environment_map read_environment(const std::string& path);
 
-/// Exposure, then x (1 + x / white^2) / (1 + x) in each band, then the sRGB curve.
+/// Exposure, then x (1 + x / white^2) / (1 + x) of the luminance, the bands in proportion, then the sRGB curve.
 void tone_map(const radiance_picture& from, float exposure, srgb_picture& to, std::size_t left, std::size_t top);
 
 /// Draws text, `scale` pixels per pixel of a font 7 high, its top left corner at (left, top). ASCII.
