@@ -190,7 +190,7 @@ std::vector<std::unique_ptr<light_source>> make_lights(const scene_description& 
 
 shader::shader(const scene_description& description) : lights_(make_lights(description)) {
     for (const auto& light : lights_) classes_ += light->classes();
-    categories_ = lights_.front()->takes_the_rest() ? classes_ - 1 : classes_;
+    categories_ = lights_.front()->takes_the_rest() && !description.occluder ? classes_ - 1 : classes_;
     kernel_ = find_kernel(description.counting, classes_);
 }
 
@@ -204,11 +204,10 @@ shader::illumination shader::illuminate(const mica::shading_point<float>& point,
         if (lights_.size() == 1 && light->has_half_vector()) all.half_vector = own;
         filled += light->classes();
     }
-    if (lights_.front()->takes_the_rest()) {
-        float rest = 1;
-        for (std::size_t k = 1; k < classes_; ++k) rest -= all.classes[k].probability;
-        all.classes[0].probability = std::max(rest, 0.F);
-    }
+    // What flashes towards other lights is no longer dim.
+    if (lights_.front()->takes_the_rest())
+        for (std::size_t k = lights_.front()->classes(); k < classes_; ++k)
+            all.classes[0].probability = std::max(all.classes[0].probability - all.classes[k].probability, 0.F);
     return all;
 }
 

@@ -4,6 +4,7 @@
 //
 // w_k is the part of the lobe around the mirror direction that shows class k. What is missing to sum p = 1 are facets that
 // reflect nothing; the dimmest class takes them in, dimmed so that its energy is kept. So K classes cost K - 1 binomials.
+// What an occluder hides is dark, and where it hides something they cost K.
 // Source: KK25 Sec. 4 and 5, Eq. 15, 17, 21. The smooth radiance is that of the split sum.
 //
 // Two kinds of classes: those of prefiltered_classes, crisp and with the colour and brightness that each has in the lobe
@@ -105,12 +106,16 @@ std::array<light_class<Real>, K> light_classes(const shading_point<Real>& point,
     const Real n_dot_v = dot(point.normal, point.wo);
     const auto seen = detail::seen_of<K>(environment, table, material, reflected(point.wo, point.normal), n_dot_v);
     std::array<light_class<Real>, K> classes;
-    Real rest = Real(1);
-    for (std::size_t k = K; k-- > 0;) {
-        const Real probability = k > 0 ? seen.visible_fraction * seen.lobe.share[k] : maximum(rest, Real(0));
-        classes[k] = {seen.reflectance * seen.lobe.radiance[k], probability};
-        rest = rest - probability;
+    Real whole = Real(0), others = Real(0);
+    for (std::size_t k = 0; k < K; ++k) {
+        classes[k] = {seen.reflectance * seen.lobe.radiance[k], seen.visible_fraction * seen.lobe.share[k]};
+        whole = whole + seen.lobe.share[k];
+        if (k > 0) others = others + classes[k].probability;
     }
+    // The dimmest class takes in what reflects nothing, but not what an occluder hides.
+    const Real share_hidden = Real(1) - whole;
+    const Real hidden = seen.visible_fraction * select(share_hidden > Real(1e-4F), share_hidden, Real(0));
+    classes[0].probability = maximum(Real(1) - others - hidden, Real(0));
     return classes;
 }
 
