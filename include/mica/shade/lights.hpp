@@ -8,8 +8,7 @@
 //
 // Rectangles and disks. A facet flashes where it reflects the eye's ray into the light, so the probability is the facet area
 // of the light's half vectors over D_H, exactly: the integral of F d psi / (2 pi) around their contour in slopes (ndf.hpp),
-// where the horizon cuts the light along the horizon. KK24 takes it from linearly transformed cosines, with tables; here
-// there are none. Where the mirror direction lies well outside, F(infinity) - F is integrated instead, which keeps the
+// where the horizon cuts the light along the horizon. KK24 takes it from linearly transformed cosines. Where the mirror direction lies well outside, F(infinity) - F is integrated instead, which keeps the
 // relative accuracy of small probabilities.
 //
 // An edge of the light is an arc of a great circle; with phi the angle from its point nearest to the mirror direction, the
@@ -125,6 +124,7 @@ struct gauss_rule<6> {
     static constexpr float weight[] = {0.171324492F, 0.360761573F, 0.467913935F,
                                        0.467913935F, 0.360761573F, 0.171324492F};
 };
+
 /// The facet area whose normals reflect wo into a region of the sphere, from the edges of its contour.
 template <class Facets, real_number Real>
 class contour_area {
