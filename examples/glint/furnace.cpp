@@ -116,7 +116,7 @@ std::vector<furnace_row> furnace_rows(const furnace_light& light, double facets,
     constexpr std::size_t batch = 64, most = 16384;
     // Below one facet per pixel the variance has no bound; the demand there grows with the standard error.
     const double wanted = facets >= 1 ? options.precision : 3 * options.precision;
-    const bool has_grazing = lit.grazing_smooth > 0.1 * lit.smooth;
+    const bool has_grazing = lit.grazing_smooth > 0.03 * lit.smooth;
     const auto precise = [&] {
         return all.standard_error() <= wanted && (!has_grazing || at_grazing.standard_error() <= wanted);
     };
