@@ -113,7 +113,7 @@ std::vector<furnace_row> furnace_rows(const furnace_light& light, double facets,
     surface.material.log_density = static_cast<float>(log_density);
 
     running_mean all, at_grazing;
-    constexpr std::size_t batch = 64, most = 16384;
+    constexpr std::size_t batch = 64, most = 65536;
     // Below one facet per pixel the variance has no bound; the demand there grows with the standard error.
     const double wanted = facets >= 1 ? options.precision : 3 * options.precision;
     const bool has_grazing = lit.grazing_smooth > 0.03 * lit.smooth;
