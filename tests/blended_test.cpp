@@ -283,10 +283,35 @@ TEST(Blended, VariedDensityKeepsTheMean) {
 
 // --- packs are scalars side by side ---------------------------------------------------------------------------------
 
+/// Softened counts, of a varied density, of one grid, of categories.
+template <class Real, class Surface, class Angular, class OneGrid>
+std::array<Real, 11> counts_of_all_kinds(const Surface& surface, const Angular& angular, const OneGrid& one_grid,
+                                         Real p) {
+    using law = mica::quantile_binomial<4>;
+    const softened_variates soft{0.2F};
+    const std::array<Real, 2> classes{Real(0.25F) * p, Real(0.5F) * p};
+    const auto varied = mica::with_varied_density(surface, Real(0.5F));
+    const auto varied_angular = mica::with_varied_density(angular, Real(0.5F));
+    const auto categories = distributed_multinomial<2, law>{}(surface, classes);
+    const auto soft_categories = distributed_multinomial<2, law, softened_variates>{soft}(surface, classes);
+    const auto interpolated = distributed_multinomial<2, law, interpolated_counts>{}(angular, classes);
+    return {distributed_binomial<law, softened_variates>{soft}(surface, p),
+            distributed_binomial<law, softened_variates>{soft}(angular, p),
+            distributed_binomial<law>{}(varied, p),
+            distributed_binomial<law, interpolated_counts>{}(varied_angular, p),
+            distributed_binomial<law, interpolated_counts>{}(one_grid, p),
+            categories[0],
+            categories[1],
+            soft_categories[0],
+            soft_categories[1],
+            interpolated[0],
+            interpolated[1]};
+}
+
 TEST(Blended, PacksEqualScalarsToTheLastBit) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(-1, 1);
-    for (int round = 0; round < 4000; ++round) {
+    for (int round = 0; round < 2000; ++round) {
         uv_derivatives<number> m;
         uv_point<number> uv;
         half_vector_point<number> half_vector;
@@ -311,6 +336,9 @@ TEST(Blended, PacksEqualScalarsToTheLastBit) {
         const number exact = distributed_binomial<exact_binomial>{}(vertices, p);
         const number counted = distributed_binomial<mica::quantile_binomial<4>, interpolated_counts>{}(vertices, p);
         const number angular = distributed_binomial<mica::quantile_binomial<4>>{}(with_half, p);
+        const number choice = number(0.5F) + number(0.499F) * uv.u;
+        const auto chosen = mica::make_one_grid_vertices(footprint, uv, trials, 7U, choice);
+        const auto all = counts_of_all_kinds(vertices, with_half, chosen, p);
         for (int i = 0; i < lanes; ++i) {
             const auto one = mica::make_footprint<float>({m.du_dx[i], m.dv_dx[i], m.du_dy[i], m.dv_dy[i]});
             ASSERT_EQ(one.sigma_min, footprint.sigma_min[i]);
@@ -325,6 +353,42 @@ TEST(Blended, PacksEqualScalarsToTheLastBit) {
             ASSERT_EQ((distributed_binomial<mica::quantile_binomial<4>, interpolated_counts>{}(alone, p[i])),
                       counted[i]);
             ASSERT_EQ(distributed_binomial<mica::quantile_binomial<4>>{}(alone_with_half, p[i]), angular[i]);
+            const auto alone_chosen = mica::make_one_grid_vertices(one, at, trials[i], 7U, choice[i]);
+            const auto all_alone = counts_of_all_kinds(alone, alone_with_half, alone_chosen, p[i]);
+            for (std::size_t kind = 0; kind < all.size(); ++kind) ASSERT_EQ(all_alone[kind], all[kind][i]) << kind;
+        }
+    }
+}
+
+template <class Vertices>
+void expect_equal_vertices(const Vertices& one, const Vertices& other) {
+    EXPECT_EQ(one.trials, other.trials);
+    for (std::size_t g = 0; g < one.grids.size(); ++g) {
+        EXPECT_EQ(one.grids[g].variate_weight, other.grids[g].variate_weight);
+        for (std::size_t v = 0; v < 3; ++v) {
+            const auto &a = one.grids[g].vertices[v], &b = other.grids[g].vertices[v];
+            EXPECT_TRUE(a.seed == b.seed && a.trials == b.trials && a.weight == b.weight &&
+                        a.variate_weight == b.variate_weight);
+            for (std::size_t c = 0; c < a.cells.size(); ++c)
+                EXPECT_TRUE(a.cells[c].seed == b.cells[c].seed && a.cells[c].weight == b.cells[c].weight);
+        }
+    }
+}
+
+// Lights from several directions may share the vertices of the surface; its density may vary before or after.
+TEST(Blended, HalfVectorsAreAddedToASurface) {
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        uniform_stream<float> xi(25, i);
+        const auto& s = shapes[i % shapes.size()];
+        const auto footprint = mica::make_footprint(derivatives_of(s.ratio, s.turn, s.level));
+        const uv_point<float> uv{xi(), xi()};
+        const auto surface = mica::make_grid_vertices(footprint, uv, 30, 1U);
+        const auto varied = mica::with_varied_density(surface, 0.5F);
+        for (int light = 0; light < 3; ++light) {
+            const half_vector_point<float> h{20 * xi() - 10, 20 * xi() - 10};
+            const auto direct = mica::make_grid_vertices(footprint, uv, h, 30, 1U);
+            expect_equal_vertices(mica::with_half_vector(surface, h), direct);
+            expect_equal_vertices(mica::with_half_vector(varied, h), mica::with_varied_density(direct, 0.5F));
         }
     }
 }
@@ -626,8 +690,8 @@ TEST(Domain, EndsWhereItSays) {
     EXPECT_TRUE(resolved(uv_derivatives<float>{largest * 0.99F, 0, 0, largest * 0.99F}, {0, 0}));
     EXPECT_FALSE(resolved(uv_derivatives<float>{largest * 1.01F, 0, 0, largest * 1.01F}, {0, 0}));
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_FALSE(resolved(uv_derivatives<float>{1, 0, 0, 1}, {nan, 0}) &&
-                 resolved(uv_derivatives<float>{1, 0, 0, 1}, {0, nan}));
+    EXPECT_FALSE(resolved(uv_derivatives<float>{1, 0, 0, 1}, {nan, 0}));
+    EXPECT_FALSE(resolved(uv_derivatives<float>{1, 0, 0, 1}, {0, nan}));
 }
 
 // At the edge the law still holds: the uniforms are uniform, for as long as places differ.
@@ -648,13 +712,89 @@ TEST(Domain, LawHoldsAtTheEdge) {
     }
 }
 
+// Against the same grids in double: to 1/6 of a cell at the edge, in proportion to the distance within.
+TEST(Domain, PlacesAreRoundedAsStated) {
+    for (const float distance : {0x1p12F, 0x1p15F, 0x1p18F}) {
+        double worst = 0;
+        for (std::uint32_t i = 0; i < 40000; ++i) {
+            uniform_stream<float> xi(19, i);
+            const auto footprint = mica::make_footprint(derivatives_of(std::exp2(16 * xi()), xi(), 8 * xi()));
+            const float farthest = distance * footprint.sigma_min * mica::default_footprint_scale;
+            const uv_point<float> uv{farthest * (2 * xi() - 1), i % 2 ? farthest : -farthest * xi()};
+            for (const auto& grid : mica::enclosing_tetrahedron(footprint, mica::default_footprint_scale)) {
+                const auto at = mica::grid_coordinates(uv, grid);
+                const auto truth = mica::grid_coordinates(
+                    uv_point<double>{static_cast<double>(uv.u), static_cast<double>(uv.v)},
+                    mica::tetrahedron_vertex<double>{grid.level, grid.log2_ratio, grid.orientation, 1, 1});
+                worst = std::max(worst,
+                                 std::hypot(static_cast<double>(at.u) - truth.u, static_cast<double>(at.v) - truth.v));
+            }
+        }
+        std::printf("2^%g cells away: placed to %.3g of a cell\n", std::log2(static_cast<double>(distance)), worst);
+        EXPECT_LE(worst, static_cast<double>(distance) / 0x1p18 / 6);
+    }
+}
+
+/// Resolved, or not for the sake of one of three reasons: ratio, place, half vector.
+template <class Use>
+void each_unresolved(float trials, const Use& use) {
+    const auto footprint = mica::make_footprint<float>({1, 0, 0, 0.5F});
+    const auto narrow = mica::make_footprint<float>({1, 0, 0, 1e-6F});
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const uv_point<float> uv{0.3F, 0.4F};
+    use(mica::make_grid_vertices(narrow, uv, trials, 1U));
+    use(mica::make_grid_vertices(footprint, uv_point<float>{nan, 0}, trials, 1U));
+    for (const auto& half_vector : {half_vector_point<float>{nan, 0}, {0, nan}, {3e5F, 0}, {0, -3e5F}, {-1e30F, 1e30F}})
+        use(mica::make_grid_vertices(footprint, uv, half_vector, trials, 1U));
+}
+
+TEST(Domain, HalfVectorsEndWhereItSays) {
+    const auto surface =
+        mica::make_grid_vertices(mica::make_footprint<float>({1, 0, 0, 1}), uv_point<float>{0, 0}, 1, 1U);
+    for (const float sign : {-1.F, 1.F}) {
+        EXPECT_TRUE(mica::with_half_vector(surface, half_vector_point<float>{sign * 0x1p18F, 0}).resolved);
+        EXPECT_TRUE(mica::with_half_vector(surface, half_vector_point<float>{0, sign * 0x1p18F}).resolved);
+        EXPECT_FALSE(mica::with_half_vector(surface, half_vector_point<float>{sign * 0x1.00001p18F, 0}).resolved);
+        EXPECT_FALSE(mica::with_half_vector(surface, half_vector_point<float>{0, sign * 0x1.00001p18F}).resolved);
+    }
+}
+
 TEST(Domain, BeyondItTheCountIsTheMean) {
-    const auto footprint = mica::make_footprint<float>({1, 0, 0, 1e-6F});
-    const auto pixel = mica::make_grid_vertices(footprint, uv_point<float>{0.3F, 0.4F}, 20, 1U);
-    EXPECT_FALSE(pixel.resolved);
-    EXPECT_EQ(distributed_binomial<exact_binomial>{}(pixel, 0.25F), 5.F);
-    EXPECT_EQ((distributed_binomial<exact_binomial, interpolated_counts>{}(pixel, 0.25F)), 5.F);
-    EXPECT_EQ((distributed_multinomial<2, exact_binomial>{}(pixel, std::array{0.25F, 0.5F})[1]), 10.F);
+    each_unresolved(20, [](const auto& pixel) {
+        EXPECT_FALSE(pixel.resolved);
+        for (const auto& one : {pixel, mica::with_varied_density(pixel, 0.8F)}) {
+            EXPECT_EQ(distributed_binomial<exact_binomial>{}(one, 0.25F), 5.F);
+            EXPECT_EQ((distributed_binomial<exact_binomial, interpolated_counts>{}(one, 0.25F)), 5.F);
+            EXPECT_EQ((distributed_binomial<mica::quantile_binomial<4>, softened_variates>{}(one, 0.25F)), 5.F);
+            EXPECT_EQ((distributed_multinomial<2, exact_binomial>{}(one, std::array{0.25F, 0.5F})[1]), 10.F);
+        }
+    });
+}
+
+// What is no number of trials and no probability counts as the nearest that is one, resolved or not; NaN gives nothing.
+TEST(Domain, TrialsAndProbabilitiesAreLimitedEverywhere) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    struct limited {
+        float trials, probability, count;
+    };
+    for (const auto& c : {limited{-3, 0.5F, 0}, {20, 2, 20}, {20, -1, 0}, {nan, 0.5F, 0}, {20, nan, 0}}) {
+        const auto expect = [&](const auto& pixel) {
+            EXPECT_EQ(distributed_binomial<mica::quantile_binomial<4>>{}(pixel, c.probability), c.count);
+            EXPECT_EQ((distributed_multinomial<1, exact_binomial>{}(pixel, std::array{c.probability})[0]), c.count);
+        };
+        expect(pixel_of<float>(shapes[3], c.trials, 1U));
+        each_unresolved(c.trials, expect);
+    }
+}
+
+TEST(Domain, DeviationsOfTheDensityAreLimited) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (std::uint32_t i = 0; i < 1000; ++i) {
+        const auto pixel = pixel_of<float>(shapes[3], 100, i);
+        EXPECT_EQ(mica::with_varied_density(pixel, -2).trials, 100.F);
+        EXPECT_EQ(mica::with_varied_density(pixel, nan).trials, 100.F);
+        EXPECT_EQ(mica::with_varied_density(pixel, 3).trials, mica::with_varied_density(pixel, 1).trials);
+    }
 }
 
 // --- softness ---------------------------------------------------------------------------------------------------------

@@ -14,6 +14,7 @@
 #include <mica/grid/distributed.hpp>
 #include <mica/law/dual_gated.hpp>
 #include <mica/law/exact.hpp>
+#include <mica/law/quantile.hpp>
 
 #include "statistics.hpp"
 
@@ -123,26 +124,39 @@ TEST(GridVertices, FollowSeedAndPlaceOnly) {
 
 class DistributedMean : public ::testing::TestWithParam<std::pair<float, float>> {};
 
-TEST_P(DistributedMean, OfBinomial) {
-    const auto [trials, probability] = GetParam();
+template <class Interpolation>
+void expect_mean_of_binomial(float trials, float probability) {
     random_places random(3);
     statistics::running_moments sample;
     for (std::uint32_t seed = 0; seed < 15000; ++seed)
         sample.add(static_cast<double>(
-            distributed_binomial<exact_binomial>{}(vertices_at(random(), trials, seed), probability)));
+            distributed_binomial<exact_binomial, Interpolation>{}(vertices_at(random(), trials, seed), probability)));
     expect_mean(sample, static_cast<double>(trials) * static_cast<double>(probability));
 }
 
-TEST_P(DistributedMean, OfMultinomial) {
-    const auto [trials, probability] = GetParam();
+template <class Interpolation>
+void expect_means_of_multinomial(float trials, float probability) {
     const std::array<float, 4> p{probability / 2, probability / 4, 0, probability / 4};
     random_places random(4);
     std::array<statistics::running_moments, 4> sample;
     for (std::uint32_t seed = 0; seed < 8000; ++seed) {
-        const auto counts = distributed_multinomial<4, exact_binomial>{}(vertices_at(random(), trials, seed), p);
+        const auto counts =
+            distributed_multinomial<4, exact_binomial, Interpolation>{}(vertices_at(random(), trials, seed), p);
         for (std::size_t k = 0; k < 4; ++k) sample[k].add(static_cast<double>(counts[k]));
     }
     for (std::size_t k = 0; k < 4; ++k) expect_mean(sample[k], static_cast<double>(trials) * static_cast<double>(p[k]));
+}
+
+TEST_P(DistributedMean, OfBinomial) {
+    const auto [trials, probability] = GetParam();
+    expect_mean_of_binomial<interpolated_counts>(trials, probability);
+    expect_mean_of_binomial<blended_variates>(trials, probability);
+}
+
+TEST_P(DistributedMean, OfMultinomial) {
+    const auto [trials, probability] = GetParam();
+    expect_means_of_multinomial<interpolated_counts>(trials, probability);
+    expect_means_of_multinomial<blended_variates>(trials, probability);
 }
 
 INSTANTIATE_TEST_SUITE_P(TrialsAndProbability, DistributedMean,
@@ -299,6 +313,11 @@ TEST(Distributed, DegeneratePixelsHaveFiniteCounts) {
                     const float gated = distributed_binomial<mica::dual_gated_binomial>{}(around, p);
                     EXPECT_TRUE(std::isfinite(exact) && exact >= 0) << exact;
                     EXPECT_TRUE(std::isfinite(gated) && gated >= 0) << gated;
+                    const float blended = distributed_binomial<exact_binomial, blended_variates>{}(around, p);
+                    const float soft =
+                        mica::distributed_binomial<mica::quantile_binomial<4>, mica::softened_variates>{}(around, p);
+                    EXPECT_TRUE(std::isfinite(blended) && blended >= 0) << blended;
+                    EXPECT_TRUE(std::isfinite(soft) && soft >= 0) << soft;
                 }
 }
 
@@ -308,6 +327,10 @@ TEST(Distributed, NothingComesOfNothing) {
         const auto where = random();
         EXPECT_EQ(distributed_binomial<mica::dual_gated_binomial>{}(vertices_at(where, 0, seed), 0.5F), 0.F);
         EXPECT_EQ(distributed_binomial<mica::dual_gated_binomial>{}(vertices_at(where, 500, seed), 0.F), 0.F);
+        const mica::distributed_binomial<exact_binomial> blended;
+        EXPECT_EQ(blended(vertices_at(where, 0, seed), 0.5F), 0.F);
+        EXPECT_EQ(blended(vertices_at(where, 500, seed), 0.F), 0.F);
+        EXPECT_EQ(blended(vertices_at(where, 4096, seed), 1.F), 4096.F);
         EXPECT_NEAR(distributed_binomial<exact_binomial>{}(vertices_at(where, 4096, seed), 1.F), 4096.F, 4.F);
     }
 }

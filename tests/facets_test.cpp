@@ -1,6 +1,7 @@
 // Explicit facets: in a footprint of any shape they flash as a binomial of those that are there says, and with uniform
 // positions as a Poisson distribution; blended variates agree with them.
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -146,6 +147,12 @@ TEST(Facets, BadArgumentsFail) {
     EXPECT_THROW(facet_set(0, facet_positions::uniform, 1), std::invalid_argument);
     const facet_set set(10, facet_positions::uniform, 1);
     EXPECT_EQ(set.count({0.5, 0.5, 0, 0, 0, 0}, flash::with_probability(1)).facets, 0U); // no footprint, no facets
+    const double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double bad : {infinity, -infinity, nan}) {
+        EXPECT_EQ(set.count({0.5, 0.5, bad, 0, 0, 1}, flash::with_probability(1)).facets, 0U);
+        EXPECT_EQ(set.count({0.5, bad, 1, 0, 0, 1}, flash::with_probability(1)).facets, 0U);
+    }
+    EXPECT_THROW(set.count({0.5, 0.5, 1e30, 0, 0, 1e30}, flash::with_probability(1)), std::invalid_argument);
     // All of them, twice in each direction.
     EXPECT_NEAR(static_cast<double>(set.count({0.5, 0.5, 2, 0, 0, 2}, flash::with_probability(1)).flashes), 400, 40);
 }

@@ -206,7 +206,7 @@ TEST(AreaLights, ProbabilityIsTheFacetAreaOfTheirHalfVectors) {
                 const double error = std::abs(p - expected) / (expected + 1e-4);
                 double& largest = round ? largest_round : largest_stretched;
                 largest = std::max(largest, error);
-                EXPECT_LE(error, round ? 0.005 : 0.1)
+                EXPECT_LE(error, round ? 0.005 : 0.01)
                     << what << ' ' << i << ": roughness " << x << ' ' << y << ", beckmann " << plain.beckmann
                     << ", size " << size << ": " << p << ' ' << expected;
             };

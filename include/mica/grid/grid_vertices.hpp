@@ -90,12 +90,12 @@ vertices_of_grids(const std::array<tetrahedron_vertex<Real>, Grids>& grids, cons
                   uv_point<Real> uv, Real trials, std::uint32_t seed, Real footprint_scale) {
     using Index = index_of<Real>;
     const Real level = footprint_level(pixel, footprint_scale);
-    const Real farthest = maximum(mica::abs(uv.u), mica::abs(uv.v));
+    const Real farthest = Real(largest_distance) * pixel.sigma_min * footprint_scale;
     grid_vertices<Real, 0, Grids> result;
     result.trials = trials;
     result.resolved = pixel.ratio <= Real(largest_grid_ratio) && level >= Real(smallest_level) &&
-                      level <= Real(largest_level) &&
-                      farthest <= Real(largest_distance) * pixel.sigma_min * footprint_scale;
+                      level <= Real(largest_level) && mica::abs(uv.u) <= farthest &&
+                      mica::abs(uv.v) <= farthest; // each: the larger of NaN and 0 is 0
     const Real grids_norm = inverse_norm(grids);
     for (std::size_t g = 0; g < Grids; ++g) {
         const Index seed_of_grid = grid_seed(seed, grids[g]);
@@ -152,8 +152,8 @@ MICA_HOST_DEVICE constexpr grid_vertices<Real, 4, Grids> with_half_vector(const 
                                                                           half_vector_point<Real> half_vector) {
     grid_vertices<Real, 4, Grids> result;
     result.trials = surface.trials;
-    result.resolved =
-        surface.resolved && maximum(mica::abs(half_vector.x), mica::abs(half_vector.y)) <= Real(largest_distance);
+    result.resolved = surface.resolved && mica::abs(half_vector.x) <= Real(largest_distance) &&
+                      mica::abs(half_vector.y) <= Real(largest_distance);
     for (std::size_t g = 0; g < Grids; ++g) {
         result.grids[g].variate_weight = surface.grids[g].variate_weight;
         for (std::size_t c = 0; c < 3; ++c) {
