@@ -7,7 +7,7 @@
 // Everything is 0 where the light or the eye is below the surface.
 //
 // Rectangles and disks. A facet flashes where it reflects the eye's ray into the light, so the probability is the facet area
-// of the light's half vectors over D_H, exactly: the integral of F d psi / (2 pi) around their contour in slopes (ndf.hpp),
+// of the light's half vectors over D_H: the integral of F d psi / (2 pi) around their contour in slopes (ndf.hpp),
 // where the horizon cuts the light along the horizon. KK24 takes it from linearly transformed cosines. Where the mirror direction lies well outside, F(infinity) - F is integrated instead, which keeps the
 // relative accuracy of small probabilities.
 //
@@ -16,7 +16,8 @@
 // smooth, and few nodes of Gauss's rule suffice to either side.
 //
 // Relative error of p, against plain sums over the light: with one roughness 0.2 % for rectangles at n.v >= 0.15 and 5 % at
-// 0.05; for disks 3 % at n.v >= 0.4 and 16 % at 0.15, where the lobe is narrow or the horizon cuts them. With two roughnesses
+// 0.05; for disks 3 % at n.v >= 0.4 and 16 % at 0.15, where the lobe is narrow or the horizon cuts them,
+// and up to all of p at 0.05. With two roughnesses
 // 1 % up to a ratio of 4, n.v >= 0.17 and roughness >= 0.05 (tests/lights_test.cpp). At a ratio of 10 and roughness 0.02, lights that are long and thin or mostly
 // below the horizon may be off by factors. p and the smooth radiance have the same error, so that no light is lost by it.
 //
