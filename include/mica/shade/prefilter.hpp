@@ -191,8 +191,9 @@ struct prefilter_quality {
 
 /// For environments that change from frame to frame: the classes and one filtered map of K = 4, from 128 x 64 texels, take
 /// 3.6 ms of one core, a fortieth of what the defaults take from 1024 x 512 (mica_benchmark_avx2, prefilter/). Error against
-/// the defaults, under a small sun: 9 % of the largest radiance at roughness 0.16, 3 % at 0.3, 1 % at 0.6; of shares 0.01
-/// (tests/classes_test.cpp).
+/// those, the largest found over 96 places of a small sun: 19 % of the largest radiance at roughness 0.16, 7 % at 0.3, 2 % at
+/// 0.6, half of it for the coarse result and half for the coarse blocks; of shares 0.06, 0.025 and 0.01, for the smaller map
+/// (tests/classes_test.cpp holds it at six places).
 inline constexpr prefilter_quality every_frame{48, 2, 0.6F, 0.25F};
 
 namespace detail {
