@@ -123,14 +123,14 @@ light_row compared(const std::vector<prepared_pixel>& pixels, const shader& shad
 
         // The classes in luminance: E[Y^2] = sum S^2 / p.
         double y = 0, y_square = 0;
-        shade.for_classes(pixel.point, surface, [&](const mica::light_class<float>& one) {
+        const auto light = shade.illuminate(pixel.point, surface);
+        for (const auto& one : light.classes) {
             const auto s = static_cast<double>(luminance(one.smooth)), p = static_cast<double>(one.probability);
             y += s;
             if (s > 0 && p > 0) y_square += s * s / p;
-        });
+        }
         part.kernel.mean = y;
         part.kernel.square = mean_square(trials, y, y_square, false);
-        const auto light = shade.illuminate(pixel.point, surface);
         add_samples(part.kernel, y, [&](std::size_t k) {
             const auto s = mica::hash(seed, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k));
             return static_cast<double>(luminance(shade(pixel.point, surface, light, s).glint));
@@ -169,16 +169,16 @@ std::vector<prepared_pixel> prepare(const explicit_light& light, const scene_des
     std::vector<mica::shading_point<float>> points;
     for (std::size_t i = 0; i < across * across; ++i)
         if (const auto hit = seen.surface(i % across, i / across)) points.push_back(hit->point);
+    const facet_normals normals(static_cast<double>(material.roughness));
     std::vector<std::optional<prepared_pixel>> all(points.size());
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         const auto& point = points[i];
         const auto beams = light.beams(point);
-        auto true_lobe = facets_under(beams, point, material);
-        const auto albedo = table.albedo(dot(point.normal, point.wo), material.roughness);
-        const auto reflectance = albedo.scale * material.f0 + colour{albedo.bias, albedo.bias, albedo.bias};
+        auto true_lobe = facets_under(beams, point, material, normals);
+        const auto reflectance = table.albedo(dot(point.normal, point.wo), material.roughness)(material.f0);
         auto same = narrow ? true_lobe
-                           : facets_of_split_sum(beams, point, material, static_cast<double>(luminance(reflectance)),
-                                                 environment);
+                           : facets_of_split_sum(beams, point, material, normals,
+                                                 static_cast<double>(luminance(reflectance)), environment);
         if (!(same.mean() > 0)) return; // no light comes here
         all[i] = prepared_pixel{point, std::move(same), std::move(true_lobe),
                                 static_cast<double>(mica::make_footprint(point.derivatives).area)};

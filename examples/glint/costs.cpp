@@ -62,14 +62,14 @@ std::vector<cost_row> all_rows(double log_density) {
     scene.surfaces.front().material.roughness = 0.3F;
     scene.surfaces.front().material.log_density = static_cast<float>(log_density);
     std::size_t smooth = 0;
-    const auto add = [&](const char* name, const auto& change) {
+    const auto add = [&](const std::string& name, const auto& change) {
         cost_row row{name, scene, smooth, 0, -1};
         change(row.scene);
         rows.push_back(row);
     };
     const auto with_smooth = [&](const std::string& name) {
         smooth = rows.size();
-        add((name + ", smooth").c_str(), [](auto& s) { s.counting.law = "none"; });
+        add(name + ", smooth", [](auto& s) { s.counting.law = "none"; });
     };
     const auto nothing = [](scene_description&) {};
 
@@ -135,7 +135,7 @@ std::vector<cost_row> all_rows(double log_density) {
         scene.lights.assign(count, light_of("sun"));
         for (std::size_t i = 0; i < count; ++i) scene.lights[i].direction = {static_cast<float>(i) - 1.5F, 1, 2};
         with_smooth(std::to_string(count) + " suns");
-        add((std::to_string(count) + " suns, one multinomial").c_str(), nothing);
+        add(std::to_string(count) + " suns, one multinomial", nothing);
     }
     scene.lights = {light_of("environment"), light_of("sun"), light_of("rectangle")};
     with_smooth("environment, sun and rectangle");
@@ -200,7 +200,7 @@ void costs(const costs_options& options) {
     };
     // What is built at the first call is no cost of a pixel.
     for (std::size_t row = 0; row < rows.size(); ++row)
-        sink = sink + shaders[row].smooth(visible.front(), rows[row].scene.surfaces.front()).g;
+        sink = sink + shaders[row].illuminate(visible.front(), rows[row].scene.surfaces.front()).smooth().g;
     if (options.counting) {
         for (std::size_t row = 0; row < rows.size(); ++row) pass(row);
         return;

@@ -50,6 +50,9 @@ struct effects_description {
     bool any() const { return angular_grid || varied_density || tint || smooth_tolerance || one_grid; }
 };
 
+/// Whether a wall on that side hides what is in a direction.
+inline bool hides(const std::optional<vector>& side, vector direction) { return side && dot(direction, *side) > 0; }
+
 /// "angular_grid, tint", or "none".
 std::string names_of(const effects_description& effects);
 

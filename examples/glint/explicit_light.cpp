@@ -52,6 +52,8 @@ std::vector<double> tangents_for(double alpha) {
     return tangents;
 }
 
+double total_facet_area(double roughness) { return facet_area_within(roughness, tangents_for(roughness)).back(); }
+
 /// The integral of D(h) n.l over the directions l above the horizon, n = wo: what the filter of environments divides by.
 double filter_weight(double alpha) {
     double sum = 0, before = 0;
@@ -96,10 +98,7 @@ void for_cone(vector axis, double depth, const Body& body) {
         }
 }
 
-struct wall {
-    std::optional<vector> side;
-    bool hides(vector w) const { return side && dot(w, *side) > 0; }
-};
+using wall = std::optional<vector>; ///< what it hides is dark
 
 class explicit_environment : public explicit_light {
   public:
@@ -110,13 +109,13 @@ class explicit_environment : public explicit_light {
                 const vector w =
                     mica::direction_of({(static_cast<float>(x) + 0.5F) / static_cast<float>(image.width),
                                         (static_cast<float>(y) + 0.5F) / static_cast<float>(image.height)});
-                if (!wall_.hides(w))
+                if (!hides(wall_, w))
                     texels_.push_back({w, mica::texel_solid_angle(image.width, image.height, y), image.at(x, y)});
             }
     }
     std::vector<beam> beams(const mica::shading_point<float>&) const override { return texels_; }
     colour radiance(const mica::shading_point<float>&, vector w) const override {
-        return wall_.hides(w) ? colour{0, 0, 0} : map_(w);
+        return hides(wall_, w) ? colour{0, 0, 0} : map_(w);
     }
 
   private:
@@ -132,7 +131,7 @@ class explicit_directional : public explicit_light {
     explicit_directional(const light_description& light, wall occluder, double roughness)
         : towards_(mica::normalized(light.direction)),
           area_(static_cast<double>(light.glint_fraction) * total_facet_area(roughness) * pi * roughness * roughness),
-          irradiance_(occluder.hides(towards_) ? colour{0, 0, 0} : light.radiance) {}
+          irradiance_(hides(occluder, towards_) ? colour{0, 0, 0} : light.radiance) {}
 
     std::vector<beam> beams(const mica::shading_point<float>& point) const override {
         std::vector<beam> all;
@@ -161,7 +160,7 @@ class explicit_sun : public explicit_light {
   public:
     explicit_sun(const light_description& light, wall occluder)
         : towards_(mica::normalized(light.direction)), depth_(1 - std::cos(static_cast<double>(light.half_angle))),
-          radiance_(occluder.hides(towards_) ? colour{0, 0, 0} : light.radiance) {}
+          radiance_(hides(occluder, towards_) ? colour{0, 0, 0} : light.radiance) {}
 
     std::vector<beam> beams(const mica::shading_point<float>&) const override {
         std::vector<beam> all;
@@ -184,7 +183,7 @@ class explicit_area : public explicit_light {
   public:
     explicit_area(vector centre, vector half_u, vector half_v, bool disk, colour radiance, wall occluder)
         : centre_(centre), half_u_(half_u), half_v_(half_v), normal_(mica::normalized(mica::cross(half_u, half_v))),
-          disk_(disk), radiance_(occluder.hides(centre) ? colour{0, 0, 0} : radiance) {}
+          disk_(disk), radiance_(hides(occluder, centre) ? colour{0, 0, 0} : radiance) {}
 
     std::vector<beam> beams(const mica::shading_point<float>& point) const override {
         constexpr int side = 192;
@@ -223,21 +222,20 @@ class explicit_area : public explicit_light {
 
 std::unique_ptr<explicit_light> make_explicit_light(const light_description& light,
                                                     const std::optional<vector>& occluder, float roughness) {
-    const wall hidden{occluder};
     if (light.type == "directional")
-        return std::make_unique<explicit_directional>(light, hidden, static_cast<double>(roughness));
-    if (light.type == "sun") return std::make_unique<explicit_sun>(light, hidden);
+        return std::make_unique<explicit_directional>(light, occluder, static_cast<double>(roughness));
+    if (light.type == "sun") return std::make_unique<explicit_sun>(light, occluder);
     if (light.type == "disk") {
         const vector normal = mica::normalized(light.normal), first = any_perpendicular(normal);
         return std::make_unique<explicit_area>(light.centre, light.radius * first,
-                                               light.radius * mica::cross(normal, first), true, light.radiance, hidden);
+                                               light.radius * mica::cross(normal, first), true, light.radiance,
+                                               occluder);
     }
     if (light.type == "area" || light.type == "rectangle")
-        return std::make_unique<explicit_area>(light.centre, light.half_u, light.half_v, false, light.radiance, hidden);
-    return std::make_unique<explicit_environment>(map_of(light), hidden);
+        return std::make_unique<explicit_area>(light.centre, light.half_u, light.half_v, false, light.radiance,
+                                               occluder);
+    return std::make_unique<explicit_environment>(map_of(light), occluder);
 }
-
-double total_facet_area(double roughness) { return facet_area_within(roughness, tangents_for(roughness)).back(); }
 
 facet_outcomes::facet_outcomes(std::vector<outcome> all) {
     cumulated_.reserve(all.size());
@@ -278,8 +276,8 @@ colour radiance_of_facet(const mica::shading_point<float>& point, const mica::gl
 } // namespace
 
 facet_outcomes facets_under(const std::vector<beam>& beams, const mica::shading_point<float>& point,
-                            const mica::glint_material& material) {
-    const double alpha = static_cast<double>(material.roughness), area = total_facet_area(alpha);
+                            const mica::glint_material& material, const facet_normals& normals) {
+    const double alpha = static_cast<double>(material.roughness), area = normals.total_area();
     std::vector<outcome> all;
     all.reserve(beams.size());
     for (const auto& one : beams) {
@@ -294,8 +292,10 @@ facet_outcomes facets_under(const std::vector<beam>& beams, const mica::shading_
     return facet_outcomes(std::move(all));
 }
 
-double visible_share(const mica::shading_point<float>& point, double roughness) {
-    const facet_normals normals(roughness);
+namespace {
+
+/// E_D / D_H: the share of the facets that reflect the eye's ray to above the horizon, by counting normals.
+double visible_share(const mica::shading_point<float>& point, const facet_normals& normals) {
     constexpr int rings = 512, spokes = 64;
     int above = 0;
     const double mu = cosine(point.normal, point.wo), sine_v = std::sqrt(std::max(0., 1 - mu * mu));
@@ -309,10 +309,13 @@ double visible_share(const mica::shading_point<float>& point, double roughness) 
     return static_cast<double>(above) / (rings * spokes);
 }
 
+} // namespace
+
 facet_outcomes facets_of_split_sum(const std::vector<beam>& beams, const mica::shading_point<float>& point,
-                                   const mica::glint_material& material, double albedo, bool filtered) {
-    const double alpha = static_cast<double>(material.roughness), visible = visible_share(point, alpha);
-    const double scale = filtered ? visible / filter_weight(alpha) : 1 / total_facet_area(alpha);
+                                   const mica::glint_material& material, const facet_normals& normals, double albedo,
+                                   bool filtered) {
+    const double alpha = static_cast<double>(material.roughness), visible = visible_share(point, normals);
+    const double scale = filtered ? visible / filter_weight(alpha) : 1 / normals.total_area();
     const vector r = mica::reflected(point.wo, point.normal);
     std::vector<outcome> all;
     all.reserve(beams.size());
@@ -334,6 +337,7 @@ facet_outcomes facets_of_split_sum(const std::vector<beam>& beams, const mica::s
 facet_normals::facet_normals(double roughness) {
     const auto tangents = tangents_for(roughness);
     const auto area = facet_area_within(roughness, tangents);
+    total_area_ = area.back();
     constexpr std::size_t size = 65536;
     std::size_t k = 0;
     for (std::size_t i = 0; i < size; ++i) {
@@ -363,9 +367,7 @@ radiance_picture picture_of_facets(const scene& seen, const explicit_light& ligh
     const auto& material = surface.material;
     const auto per_side = static_cast<std::size_t>(std::exp(static_cast<double>(material.log_density) / 2));
     const mica::reference::facet_set facets(per_side, mica::reference::facet_positions::jittered, seed);
-    const auto alpha = static_cast<double>(material.roughness);
-    const facet_normals normals(alpha);
-    const double area = total_facet_area(alpha);
+    const facet_normals normals(static_cast<double>(material.roughness));
     const std::size_t width = seen.width(), height = seen.height();
     radiance_picture picture{width, height, std::vector<colour>(width * height, colour{0, 0, 0})};
     parallel_loop{"explicit facets"}(height, [&](std::size_t y) {
@@ -383,7 +385,7 @@ radiance_picture picture_of_facets(const scene& seen, const explicit_light& ligh
                 const double t = normals.tangent(-std::expm1(-r * r / 2)) / r;
                 const vector h = mica::normalized(static_cast<float>(t * slope_u) * point.tangent +
                                                   static_cast<float>(t * slope_v) * bitangent + point.normal);
-                sum = sum + facet_radiance(light, point, material, area, h);
+                sum = sum + facet_radiance(light, point, material, normals.total_area(), h);
             };
             if (trials > enough_facets) { // towards a horizon there is no end of them
                 std::mt19937 random(mica::hash(seed, static_cast<std::uint32_t>(y * width + x)));

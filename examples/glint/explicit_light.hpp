@@ -70,33 +70,35 @@ class facet_outcomes {
     double mean_ = 0, mean_square_ = 0;
 };
 
-/// The facets of the surface under beams: normals with density D / D_H, each reflecting with its own Fresnel factor and
-/// masking.
-facet_outcomes facets_under(const std::vector<beam>& beams, const mica::shading_point<float>& point,
-                            const mica::glint_material& material);
-
-/// The same with the albedo of the split sum, shared by all facets that reflect to above the horizon; `filtered` with the
-/// lobe that environments are filtered with (n = v = r): what a kernel would count if every beam were a class of its own.
-facet_outcomes facets_of_split_sum(const std::vector<beam>& beams, const mica::shading_point<float>& point,
-                                   const mica::glint_material& material, double albedo, bool filtered);
-
 /// Normals of GGX facets by area: the tangent of the angle to n, of a uniform in (0, 1).
 class facet_normals {
   public:
     explicit facet_normals(double roughness);
     double tangent(double uniform) const;
 
+    /// D_H, by quadrature.
+    double total_area() const { return total_area_; }
+
   private:
+    double total_area_ = 0;
     std::vector<double> tangent_; ///< at equal steps of the facet area within
 };
+
+/// The facets of the surface under beams: normals with density D / D_H, each reflecting with its own Fresnel factor and
+/// masking.
+facet_outcomes facets_under(const std::vector<beam>& beams, const mica::shading_point<float>& point,
+                            const mica::glint_material& material, const facet_normals& normals);
+
+/// The same with the albedo of the split sum, shared by all facets that reflect to above the horizon; `filtered` with the
+/// lobe that environments are filtered with (n = v = r): what a kernel would count if every beam were a class of its own.
+facet_outcomes facets_of_split_sum(const std::vector<beam>& beams, const mica::shading_point<float>& point,
+                                   const mica::glint_material& material, const facet_normals& normals, double albedo,
+                                   bool filtered);
 
 /// Facet radiance Y of a facet with normal h, in the surface's world: its pixel gets Y / N.
 /// `total_area` is D_H.
 colour facet_radiance(const explicit_light& light, const mica::shading_point<float>& point,
                       const mica::glint_material& material, double total_area, vector h);
-
-/// D_H, by quadrature.
-double total_facet_area(double roughness);
 
 /// A picture whose pixels add up the facets in their ellipses, at fixed places on the surface: exp(log density) of them per
 /// unit uv^2, which should be below 1e7. A pixel with more than 4000 of them shows as many other ones.

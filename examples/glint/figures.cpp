@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <functional>
 #include <stdexcept>
 
 #include <tbb/parallel_for.h>
@@ -158,9 +157,9 @@ tiled_picture white_furnace(scene_description description, int realisations) {
         sheet.label_column(column, text_of("ln density %g", static_cast<double>(densities[column])));
         const frame seen = rendered(description, sheet.tile());
         sheet.draw(column, 0, split(seen.glint, mean_of(description, sheet.tile(), realisations)), 0.5F);
-        sheet.label_column(3, "smooth");
-        sheet.draw(3, 0, seen.smooth, 0.5F);
+        if (column == 0) sheet.draw(3, 0, seen.smooth, 0.5F);
     }
+    sheet.label_column(3, "smooth");
     return sheet;
 }
 

@@ -79,13 +79,13 @@ lit_pixels lit_by(const shader& shade, const scene& seen) {
     for (std::size_t i = 0; i < size * size; ++i) {
         const auto hit = seen.surface(i % size, i / size);
         if (!hit) continue;
-        const auto smooth = static_cast<double>(luminance(shade.smooth(hit->point, seen.surfaces()[0])));
+        const auto light = shade.illuminate(hit->point, seen.surfaces()[0]);
+        const auto smooth = static_cast<double>(luminance(light.smooth()));
         if (!(smooth > 0)) continue;
-        const lit_pixel pixel{hit->point, shade.illuminate(hit->point, seen.surfaces()[0]), smooth};
+        const lit_pixel pixel{hit->point, light, smooth};
         const auto footprint = static_cast<double>(mica::make_footprint(hit->point.derivatives).area);
         area += footprint;
-        lit.flashes_at_zero +=
-            smooth * footprint * static_cast<double>(shade.flash_probability(hit->point, seen.surfaces()[0]));
+        lit.flashes_at_zero += smooth * footprint * static_cast<double>(light.flash_probability());
         (grazing(pixel) ? lit.grazing_smooth : lit.smooth) += smooth;
         lit.pixels.push_back(pixel);
     }

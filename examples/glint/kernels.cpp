@@ -17,8 +17,6 @@ namespace glint {
 
 namespace {
 
-constexpr std::size_t most_classes = 8;
-
 /// DB23's law with its gate as published, which fails for small p.
 using published_gated = mica::basic_floored_gated_binomial<mica::naive_gate>;
 

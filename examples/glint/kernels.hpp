@@ -8,6 +8,9 @@
 
 namespace glint {
 
+/// Classes of light of a pixel.
+inline constexpr std::size_t most_classes = 8;
+
 /// Shades a pixel whose classes of light are known: point, material, classes, half vector, seed.
 using kernel_function = std::function<mica::glint_radiance<float>(
     const mica::shading_point<float>&, const mica::glint_material&, std::span<const mica::light_class<float>>,

@@ -67,13 +67,10 @@ class fields {
         return found == object_.end() ? nullptr : &*found;
     }
 
-    static void set(const json& from, const std::string& place, float& value) {
+    template <std::floating_point Value>
+    static void set(const json& from, const std::string& place, Value& value) {
         if (!from.is_number()) throw std::invalid_argument(place + " is not a number");
-        value = from.get<float>();
-    }
-    static void set(const json& from, const std::string& place, double& value) {
-        if (!from.is_number()) throw std::invalid_argument(place + " is not a number");
-        value = from.get<double>();
+        value = from.get<Value>();
     }
     static void set(const json& from, const std::string& place, bool& value) {
         if (!from.is_boolean()) throw std::invalid_argument(place + " is not true or false");

@@ -36,13 +36,6 @@ auto with_levels(int levels, const Body& body) {
     return with_levels(static_cast<std::size_t>(levels), body, compiled_levels{}); // check() saw to the rest
 }
 
-/// What a wall hides.
-struct wall {
-    std::optional<vector> side;
-
-    float operator()(vector direction) const { return side && dot(direction, *side) > 0 ? 0.F : 1.F; }
-};
-
 template <class Environment, std::size_t K>
 class environment_light : public light_source {
   public:
@@ -86,8 +79,8 @@ std::unique_ptr<light_source> make_environment(const light_description& light, c
         }
         const auto classes = light.classes == "colour" ? mica::environment_classes<K>::by_colour(map)
                                                        : mica::environment_classes<K>::by_brightness(map);
-        return environment_of(mica::prefiltered_classes<K>(map, classes, roughnesses, wall{description.occluder}, loop),
-                              levels);
+        const auto visible = [&description](vector w) { return hides(description.occluder, w) ? 0.F : 1.F; };
+        return environment_of(mica::prefiltered_classes<K>(map, classes, roughnesses, visible, loop), levels);
     });
 }
 
@@ -102,7 +95,7 @@ class constant_probability : public light_source {
 
     vector fill(const mica::shading_point<float>& point, const surface_description& surface,
                 std::span<mica::light_class<float>> classes) const override {
-        std::array<mica::light_class<float>, 8> all{}; // of as many levels as there may be
+        std::array<mica::light_class<float>, most_classes> all{};
         environment_->fill(point, surface, all);
         classes[0] = {{0, 0, 0}, probability_};
         for (std::size_t k = 0; k < environment_->classes(); ++k) classes[0].smooth = classes[0].smooth + all[k].smooth;
@@ -118,8 +111,8 @@ class constant_probability : public light_source {
 template <class Light>
 class lobe_light : public light_source {
   public:
-    lobe_light(Light light, std::optional<vector> wall_side, vector towards)
-        : light_(light), visible_(wall{wall_side}(towards)) {}
+    lobe_light(Light light, const std::optional<vector>& wall_side, vector towards)
+        : light_(light), visible_(hides(wall_side, towards) ? 0.F : 1.F) {}
 
     std::size_t classes() const override { return 1; }
 
@@ -152,9 +145,8 @@ std::unique_ptr<light_source> lobe_light_of(Light light, const scene_description
 
 std::unique_ptr<light_source> make_light(const light_description& light, const scene_description& description) {
     if (light.type == "environment") return make_environment(light, description);
-    if (light.type == "wdh20") {
+    if (light.type == "wdh20")
         return std::make_unique<constant_probability>(make_environment(light, description), light.gamma);
-    }
     const vector direction = mica::normalized(light.direction);
     if (light.type == "directional")
         return lobe_light_of(mica::directional_light{direction, light.radiance, light.glint_fraction}, description,
@@ -168,14 +160,7 @@ std::unique_ptr<light_source> make_light(const light_description& light, const s
                          description, light.centre);
 }
 
-} // namespace
-
-mica::environment_map map_of(const light_description& light) {
-    if (light.file == "white") return white_environment();
-    if (is_built_in(light.file)) return lamps_environment(std::stof(light.file.substr(6)));
-    return light.file.empty() ? procedural_environment() : read_environment(light.file);
-}
-
+/// Lights of a scene, prepared (environments filtered for the roughnesses of the surfaces).
 std::vector<std::unique_ptr<light_source>> make_lights(const scene_description& description) {
     check(description);
     std::vector<std::unique_ptr<light_source>> lights;
@@ -186,6 +171,14 @@ std::vector<std::unique_ptr<light_source>> make_lights(const scene_description& 
     // The environment first, so that its dimmest class is class 0.
     std::stable_partition(lights.begin(), lights.end(), [](const auto& light) { return light->takes_the_rest(); });
     return lights;
+}
+
+} // namespace
+
+mica::environment_map map_of(const light_description& light) {
+    if (light.file == "white") return white_environment();
+    if (is_built_in(light.file)) return lamps_environment(std::stof(light.file.substr(6)));
+    return light.file.empty() ? procedural_environment() : read_environment(light.file);
 }
 
 shader::shader(const scene_description& description) : lights_(make_lights(description)) {
@@ -222,15 +215,15 @@ mica::glint_radiance<float> shader::operator()(const mica::shading_point<float>&
     return (*this)(point, surface, illuminate(point, surface), seed);
 }
 
-mica::rgb<float> shader::smooth(const mica::shading_point<float>& point, const surface_description& surface) const {
+mica::rgb<float> shader::illumination::smooth() const {
     mica::rgb<float> sum{0, 0, 0};
-    for (const auto& one : illuminate(point, surface).classes) sum = sum + one.smooth;
+    for (const auto& one : classes) sum = sum + one.smooth;
     return sum;
 }
 
-float shader::flash_probability(const mica::shading_point<float>& point, const surface_description& surface) const {
+float shader::illumination::flash_probability() const {
     float sum = 0;
-    for (const auto& one : illuminate(point, surface).classes) sum += one.probability;
+    for (const auto& one : classes) sum += one.probability;
     return std::min(sum, 1.F);
 }
 

@@ -29,23 +29,24 @@ class light_source {
     virtual bool has_half_vector() const { return true; }
 };
 
-/// Lights of a scene, prepared (environments filtered for the roughnesses of the surfaces).
 /// The map that a light names.
 mica::environment_map map_of(const light_description& light);
-
-std::vector<std::unique_ptr<light_source>> make_lights(const scene_description& description);
 
 /// All that shades a scene.
 class shader {
   public:
     explicit shader(const scene_description& description);
 
-    static constexpr std::size_t most_classes = 8;
-
     /// What shines on a pixel, the same in all realisations.
     struct illumination {
-        std::array<mica::light_class<float>, most_classes> classes{};
+        std::array<mica::light_class<float>, most_classes> classes{}; ///< black beyond those of the lights
         mica::vector3<float> half_vector;
+
+        /// The limit of infinitely many facets.
+        mica::rgb<float> smooth() const;
+
+        /// That a facet flashes at all.
+        float flash_probability() const;
     };
     illumination illuminate(const mica::shading_point<float>& point, const surface_description& surface) const;
 
@@ -54,20 +55,6 @@ class shader {
                                            const illumination& light, std::uint32_t seed) const;
     mica::glint_radiance<float> operator()(const mica::shading_point<float>& point, const surface_description& surface,
                                            std::uint32_t seed) const;
-
-    /// The limit of infinitely many facets.
-    mica::rgb<float> smooth(const mica::shading_point<float>& point, const surface_description& surface) const;
-
-    /// That a facet flashes at all.
-    float flash_probability(const mica::shading_point<float>& point, const surface_description& surface) const;
-
-    /// Calls body(light_class) for all classes of light of a pixel.
-    template <class Body>
-    void for_classes(const mica::shading_point<float>& point, const surface_description& surface,
-                     const Body& body) const {
-        const auto all = illuminate(point, surface);
-        for (std::size_t k = 0; k < classes_; ++k) body(all.classes[k]);
-    }
 
     std::size_t binomials_per_pixel() const { return kernel_.binomials(categories_); }
 

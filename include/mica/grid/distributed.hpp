@@ -92,6 +92,12 @@ MICA_HOST_DEVICE constexpr Real mean_successes(Real trials, Real probability) {
     return n * p;
 }
 
+/// exp(s z - s^2 / 2) with z limited to 4: of mean 1 for z standard normal.
+template <real_number Real>
+MICA_HOST_DEVICE constexpr Real lognormal(Real z, Real s) {
+    return mica::exp(s * (clamp(z, Real(-4), Real(4)) - Real(0.5) * s));
+}
+
 } // namespace detail
 
 /// The number of successes in a pixel, with mean N p; N and p as in binomial_law.hpp. `light`, at most largest_light, tells
@@ -143,7 +149,7 @@ with_varied_density(grid_vertices<Real, HalfVectors, Grids> vertices, std::type_
     static_assert(stream > largest_light);
     const Real s = clamp(deviation, Real(0), Real(1));
     const auto factor = [s, resolved = vertices.resolved](Real z) {
-        return select(resolved, mica::exp(s * (clamp(z, Real(-4), Real(4)) - Real(0.5) * s)), Real(1));
+        return select(resolved, detail::lognormal(z, s), Real(1));
     };
     grid_vertices<Real, 0, Grids> surface{vertices.trials, vertices.resolved, {}};
     for (std::size_t g = 0; g < Grids; ++g) {

@@ -67,9 +67,8 @@ tint_of(const Vertices& vertices, typename Vertices::number flashes, typename Ve
     const Real s = strength * select(flashes > Real(1), inverse_sqrt(maximum(flashes, Real(1))), Real(1));
     // Three unit vectors a third of a turn apart: standard normal each, and their sum is 0, so grey is rare.
     constexpr float half = 0.5F, height = 0.866025404F;
-    const auto band = [s](Real z) { return mica::exp(s * (clamp(z, Real(-4), Real(4)) - Real(0.5) * s)); };
-    return {band(first), band(Real(height) * second - Real(half) * first),
-            band(Real(-height) * second - Real(half) * first)};
+    return {lognormal(first, s), lognormal(Real(height) * second - Real(half) * first, s),
+            lognormal(Real(-height) * second - Real(half) * first, s)};
 }
 
 } // namespace detail

@@ -104,6 +104,20 @@ class environment_map {
     equirect_image<rgb<float>> image_;
 };
 
+namespace detail {
+
+/// The least and the greatest luminance of a map.
+inline std::pair<float, float> luminance_range(const environment_map& map) {
+    float lowest = std::numeric_limits<float>::max(), highest = 0;
+    for (const auto& texel : map.image().texels) {
+        lowest = minimum(lowest, luminance(texel));
+        highest = maximum(highest, luminance(texel));
+    }
+    return {lowest, highest};
+}
+
+} // namespace detail
+
 /// K levels of luminance and the fuzzy indicators that assign every luminance to its two neighbours (KK25 Sec. 5,
 /// Eq. 18 and 19):
 ///
@@ -120,12 +134,8 @@ class environment_levels {
     /// counts as at least it.
     explicit environment_levels(const environment_map& map, float floor = 1e-3F) {
         if (!(floor > 0)) MICA_FAIL("floor", floor, "positive");
-        float lowest = std::numeric_limits<float>::max(), highest = 0;
-        for (const auto& texel : map.image().texels) {
-            lowest = minimum(lowest, luminance(texel));
-            highest = maximum(highest, luminance(texel));
-        }
-        lowest = minimum(maximum(lowest, floor), highest);
+        const auto [darkest, highest] = detail::luminance_range(map);
+        const float lowest = minimum(maximum(darkest, floor), highest);
         radiance_[K - 1] = highest; // itself, not exp(log(highest)): the brightest texel is exactly the top level
         if (!(highest > 0)) return;
         for (std::size_t k = 1; k + 1 < K; ++k) {

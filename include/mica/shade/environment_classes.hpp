@@ -22,10 +22,11 @@ class environment_classes {
     /// texels count as it.
     static environment_classes by_brightness(const environment_map& map, float floor = 1e-3F) {
         environment_classes classes(floor);
-        const auto [lowest, highest] = range_of(map, floor);
+        const auto [lowest, highest] = detail::luminance_range(map);
+        const float low = std::log2(maximum(lowest, floor)), high = std::log2(maximum(highest, floor));
         for (std::size_t k = 0; k < K; ++k) {
             const float part = static_cast<float>(k) / (K - 1);
-            classes.centre_[k] = {(1 - part) * std::log2(lowest) + part * std::log2(highest), 0, 0};
+            classes.centre_[k] = {(1 - part) * low + part * high, 0, 0};
         }
         return classes;
     }
@@ -64,15 +65,6 @@ class environment_classes {
 
     explicit environment_classes(float floor) : floor_(floor) {
         if (!(floor > 0)) MICA_FAIL("floor", floor, "positive");
-    }
-
-    static std::pair<float, float> range_of(const environment_map& map, float floor) {
-        float lowest = std::numeric_limits<float>::max(), highest = 0;
-        for (const auto& texel : map.image().texels) {
-            lowest = minimum(lowest, luminance(texel));
-            highest = maximum(highest, luminance(texel));
-        }
-        return {maximum(lowest, floor), maximum(highest, floor)};
     }
 
     feature feature_of(rgb<float> radiance) const {

@@ -65,17 +65,8 @@ template <std::size_t K, class Environment>
 environment_seen<float, K> seen_of(const Environment& environment, const microfacet_table& table,
                                    const glint_material& material, vector3<float> r, float n_dot_v) {
     if (!(n_dot_v > 0)) return {};
-    const auto albedo = table.albedo(n_dot_v, material.roughness);
-    return {lobe_of(environment, r, material.roughness),
-            albedo.scale * material.f0 + rgb<float>{albedo.bias, albedo.bias, albedo.bias},
+    return {lobe_of(environment, r, material.roughness), table.albedo(n_dot_v, material.roughness)(material.f0),
             table.visible_fraction(n_dot_v, material.roughness)};
-}
-
-template <real_number Real>
-void set_lane(rgb<Real>& colour, int i, rgb<float> value) {
-    mica::set_lane(colour.r, i, value.r);
-    mica::set_lane(colour.g, i, value.g);
-    mica::set_lane(colour.b, i, value.b);
 }
 
 /// Packs look up their lanes one by one.
@@ -87,10 +78,10 @@ environment_seen<Real, K> seen_of(const Environment& environment, const microfac
         const vector3<float> towards{lane(r.x, i), lane(r.y, i), lane(r.z, i)};
         const auto one = seen_of<K>(environment, table, material, towards, lane(n_dot_v, i));
         for (std::size_t k = 0; k < K; ++k) {
-            set_lane(seen.lobe.radiance[k], i, one.lobe.radiance[k]);
+            mica::set_lane(seen.lobe.radiance[k], i, one.lobe.radiance[k]);
             mica::set_lane(seen.lobe.share[k], i, one.lobe.share[k]);
         }
-        set_lane(seen.reflectance, i, one.reflectance);
+        mica::set_lane(seen.reflectance, i, one.reflectance);
         mica::set_lane(seen.visible_fraction, i, one.visible_fraction);
     }
     return seen;

@@ -304,14 +304,10 @@ struct view_terms {
 template <real_number Real>
 view_terms<Real> view_terms_of(const microfacet_table& table, Real n_dot_v, Real roughness, rgb<float> f0) {
     view_terms<Real> terms{};
-    using Scalar = scalar_of<Real>;
     for (int i = 0; i < lanes_of<Real>; ++i) {
         const auto mu = static_cast<float>(lane(n_dot_v, i)), alpha = static_cast<float>(lane(roughness, i));
-        const auto albedo = table.albedo(mu, alpha);
-        mica::set_lane(terms.visible_fraction, i, Scalar(table.visible_fraction(mu, alpha)));
-        mica::set_lane(terms.albedo.r, i, Scalar(albedo.scale * f0.r + albedo.bias));
-        mica::set_lane(terms.albedo.g, i, Scalar(albedo.scale * f0.g + albedo.bias));
-        mica::set_lane(terms.albedo.b, i, Scalar(albedo.scale * f0.b + albedo.bias));
+        mica::set_lane(terms.visible_fraction, i, scalar_of<Real>(table.visible_fraction(mu, alpha)));
+        mica::set_lane(terms.albedo, i, table.albedo(mu, alpha)(f0));
     }
     return terms;
 }

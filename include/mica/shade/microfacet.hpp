@@ -134,6 +134,9 @@ Real visible_facet_area(Real n_dot_v, Real roughness) {
 template <scalar_number Real>
 struct albedo_terms {
     Real scale, bias;
+
+    /// E(f0), band by band.
+    rgb<Real> operator()(rgb<Real> f0) const { return scale * f0 + rgb<Real>{bias, bias, bias}; }
 };
 
 /// By sampling visible normals (Heitz 2018). They are points of a disc; the strata are finer towards its edge, where

@@ -51,6 +51,15 @@ struct rgb {
     MICA_HOST_DEVICE friend constexpr rgb operator*(Real s, rgb a) { return {s * a.r, s * a.g, s * a.b}; }
 };
 
+/// Colours and lanes, as numbers have them (numeric/number.hpp).
+template <real_number Real>
+MICA_HOST_DEVICE constexpr void set_lane(rgb<Real>& colour, int i, rgb<float> value) {
+    using Scalar = scalar_of<Real>;
+    set_lane(colour.r, i, Scalar(value.r));
+    set_lane(colour.g, i, Scalar(value.g));
+    set_lane(colour.b, i, Scalar(value.b));
+}
+
 /// Relative luminance (Rec. 709).
 template <real_number Real>
 MICA_HOST_DEVICE constexpr Real luminance(rgb<Real> c) {
