@@ -241,8 +241,8 @@ template <real_number Real>
 MICA_HOST_DEVICE constexpr Real expm1(Real y) {
     const auto parts = detail::reduce_exponent(y);
     const Real rest = detail::expm1_reduced(parts.remainder);
-    const auto small = abs(y) < Real(0.34375); // k = 0 and the remainder is y
-    return select(small, rest, parts.power + parts.power * rest - Real(1));
+    const auto near_zero = abs(y) < Real(0.34375); // k = 0 and the remainder is y
+    return select(near_zero, rest, parts.power + parts.power * rest - Real(1));
 }
 
 namespace detail {

@@ -65,7 +65,7 @@ struct scaled_gate {
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real exponent(Real trials, Real probability) {
         constexpr auto epsilon = scalar_of<Real>(2.8840315031266057e-4); // 10^-3.54
-        const Real p = maximum(probability, Real(std::numeric_limits<scalar_of<Real>>::min()));
+        const Real p = maximum(probability, Real((std::numeric_limits<scalar_of<Real>>::min)()));
         const Real c = maximum(Real(1), Real(epsilon) / p);
         return trials / c * mica::log(Real(1) - c * probability);
     }

@@ -53,8 +53,8 @@ MICA_HOST_DEVICE constexpr Real quantile_size(Real u) {
     const Real centre = x * polynomial(centre_argument, a) / polynomial(centre_argument, b);
     const Real r = mica::sqrt(-mica::log(u));
     const Real middle = polynomial(r - Real(1.6), c) / polynomial(r - Real(1.6), d);
-    const Real far = polynomial(r - Real(5), e) / polynomial(r - Real(5), f);
-    return select(x <= Real(0.425), centre, select(r <= Real(5), middle, far));
+    const Real tail = polynomial(r - Real(5), e) / polynomial(r - Real(5), f);
+    return select(x <= Real(0.425), centre, select(r <= Real(5), middle, tail));
 }
 
 /// Two polynomials in w = -ln(4 u (1-u)): z = (1/2 - u) C(w - 2.5) up to w = 5, z = T(sqrt(w) - 3.4) from there to

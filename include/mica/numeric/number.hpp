@@ -171,14 +171,32 @@ MICA_HOST_DEVICE constexpr Number truncate(Number x) {
     return detail::without_fraction(x, x < Number(detail::integers_from<scalar_of<Number>>));
 }
 
+namespace detail {
+
+/// The bits of infinity, those of the largest number and 1: under -ffast-math newer clangs warn of infinity itself.
+template <class Scalar>
+inline constexpr auto infinity_bits =
+    static_cast<bits_of<Scalar>>(reinterpret<bits_of<Scalar>>((std::numeric_limits<Scalar>::max)()) + 1);
+
+/// The bits of |x|.
+template <real_number Number>
+MICA_HOST_DEVICE constexpr bits_of<Number> bits_but_sign(Number x) {
+    constexpr auto all_but_sign = (std::numeric_limits<bits_of<scalar_of<Number>>>::max)() >> 1;
+    return reinterpret<bits_of<Number>>(x) & bits_of<Number>(all_but_sign);
+}
+
+} // namespace detail
+
 /// Whether x is NaN, read off its bits because -ffast-math deletes x != x.
 template <real_number Number>
 MICA_HOST_DEVICE constexpr mask_of<Number> is_nan(Number x) {
-    using Bits = bits_of<Number>;
-    constexpr scalar_of<Number> infinity = std::numeric_limits<scalar_of<Number>>::infinity();
-    constexpr auto infinity_bits = reinterpret<bits_of<scalar_of<Number>>>(infinity);
-    constexpr auto all_but_sign = std::numeric_limits<decltype(infinity_bits)>::max() >> 1;
-    return (reinterpret<Bits>(x) & Bits(all_but_sign)) > Bits(infinity_bits);
+    return detail::bits_but_sign(x) > bits_of<Number>(detail::infinity_bits<scalar_of<Number>>);
+}
+
+/// Whether x is neither infinite nor NaN.
+template <real_number Number>
+MICA_HOST_DEVICE constexpr mask_of<Number> is_finite(Number x) {
+    return detail::bits_but_sign(x) < bits_of<Number>(detail::infinity_bits<scalar_of<Number>>);
 }
 
 namespace detail {

@@ -91,7 +91,7 @@ class facet_set {
         const double half_u = seen.radius * std::hypot(seen.du_dx, seen.du_dy);
         const double half_v = seen.radius * std::hypot(seen.dv_dx, seen.dv_dy);
         const double farthest = (std::max)(std::abs(seen.u) + half_u, std::abs(seen.v) + half_v);
-        if (!(std::abs(determinant) > 0) || !std::isfinite(half_u + half_v + std::abs(seen.u) + std::abs(seen.v)))
+        if (!(std::abs(determinant) > 0) || !is_finite(half_u + half_v + std::abs(seen.u) + std::abs(seen.v)))
             return result;
         if (!(farthest <= 0x1p20)) MICA_FAIL("ellipse", farthest, "within 2^20 of the origin");
         const double squares = static_cast<double>(per_side_);

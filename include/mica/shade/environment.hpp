@@ -108,7 +108,7 @@ namespace detail {
 
 /// The least and the greatest luminance of a map.
 inline std::pair<float, float> luminance_range(const environment_map& map) {
-    float lowest = std::numeric_limits<float>::max(), highest = 0;
+    float lowest = (std::numeric_limits<float>::max)(), highest = 0;
     for (const auto& texel : map.image().texels) {
         lowest = minimum(lowest, luminance(texel));
         highest = maximum(highest, luminance(texel));

@@ -109,7 +109,7 @@ class environment_classes {
             return a.place.brightness < b.place.brightness;
         });
         centre_.fill(brightest->place);
-        std::vector<float> apart(samples.size(), std::numeric_limits<float>::infinity());
+        std::vector<float> apart(samples.size(), (std::numeric_limits<float>::max)());
         for (std::size_t k = 1; k < K; ++k) {
             std::size_t farthest = 0;
             for (std::size_t i = 0; i < samples.size(); ++i) {

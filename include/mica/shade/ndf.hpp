@@ -25,9 +25,9 @@ namespace detail {
 template <real_number Real>
 MICA_HOST_DEVICE constexpr Real atanh_over(Real x) {
     const Real s = x * x;
-    const auto small = x < Real(0.1F);
-    const Real y = select(small, Real(0.1F), x);
-    return select(small, Real(1) + s * (Real(1.F / 3) + s * (Real(0.2F) + s * Real(1.F / 7))),
+    const auto near_zero = x < Real(0.1F);
+    const Real y = select(near_zero, Real(0.1F), x);
+    return select(near_zero, Real(1) + s * (Real(1.F / 3) + s * (Real(0.2F) + s * Real(1.F / 7))),
                   mica::log((Real(1) + y) / (Real(1) - y)) / (y + y));
 }
 
@@ -145,9 +145,9 @@ struct beckmann_shape {
     /// (F(infinity) - beyond) / q, and where they cancel 1 + q (a^2 - 2) / 4.
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real within_over_square(Real a2, Real q, Real w) {
-        const auto small = q < Real(2e-3F);
-        const Real divisor = select(small, Real(1), q);
-        return select(small, Real(1) + Real(0.25F) * q * (a2 - Real(2)), (area(a2) - beyond(a2, q, w)) / divisor);
+        const auto near_zero = q < Real(2e-3F);
+        const Real divisor = select(near_zero, Real(1), q);
+        return select(near_zero, Real(1) + Real(0.25F) * q * (a2 - Real(2)), (area(a2) - beyond(a2, q, w)) / divisor);
     }
     /// exp(-q) (w + a^2 / (2 w) K(a^2 / w^2)).
     template <real_number Real>

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -88,8 +89,8 @@ class texel_pyramid {
             // 2 sqrt(alpha^2 + tan^2) = 2 sqrt(q) / cos.
             const float cos_square = (1 + cosine) / 2;
             const float q = 1 - cos_square + alpha * alpha * cos_square;
-            const bool small = radius < widest && radius * radius * cos_square < 4 * fineness * fineness * q;
-            if (at.layer == 0 || small) {
+            const bool small_enough = radius < widest && radius * radius * cos_square < 4 * fineness * fineness * q;
+            if (at.layer == 0 || small_enough) {
                 if (cosine <= 0) continue;
                 const float weight = cosine * b.solid_angle / (q * q); // alpha^2 / pi is in both sums
                 for (std::size_t c = 0; c < Channels; ++c) sum[c] += weight * b.mean[c];
@@ -163,8 +164,8 @@ class texel_pyramid {
 
     /// The radius of the blocks of row y.
     static float radius_of(const layer& blocks, std::size_t y, std::size_t width, std::size_t height) {
-        constexpr float pi = 3.14159265358979F;
-        if (4 * blocks.side > width) return pi; // a quarter turn and more: corners are not the farthest points
+        if (4 * blocks.side > width)
+            return std::numbers::pi_v<float>; // a quarter turn and more: corners are not the farthest points
         const float right = static_cast<float>(blocks.side) / static_cast<float>(width);
         const float top = static_cast<float>(y * blocks.side) / static_cast<float>(height);
         const float bottom = static_cast<float>((std::min)((y + 1) * blocks.side, height)) / static_cast<float>(height);
@@ -242,7 +243,7 @@ class filtered_maps {
         float roughness;
         image_type image;
     };
-    static constexpr float pi = 3.14159265358979F;
+    static constexpr float pi = std::numbers::pi_v<float>;
 
     static bool narrower_than_a_texel(float roughness, std::size_t height) {
         return 2 * roughness < pi / static_cast<float>(height);

@@ -46,9 +46,9 @@ template <real_number Real>
 struct rgb {
     Real r, g, b;
 
-    MICA_HOST_DEVICE friend constexpr rgb operator+(rgb a, rgb b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
-    MICA_HOST_DEVICE friend constexpr rgb operator*(rgb a, rgb b) { return {a.r * b.r, a.g * b.g, a.b * b.b}; }
-    MICA_HOST_DEVICE friend constexpr rgb operator*(Real s, rgb a) { return {s * a.r, s * a.g, s * a.b}; }
+    MICA_HOST_DEVICE friend constexpr rgb operator+(rgb x, rgb y) { return {x.r + y.r, x.g + y.g, x.b + y.b}; }
+    MICA_HOST_DEVICE friend constexpr rgb operator*(rgb x, rgb y) { return {x.r * y.r, x.g * y.g, x.b * y.b}; }
+    MICA_HOST_DEVICE friend constexpr rgb operator*(Real s, rgb x) { return {s * x.r, s * x.g, s * x.b}; }
 };
 
 /// Colours and lanes, as numbers have them (numeric/number.hpp).
