@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "../config.hpp"
+#include "../numeric/number.hpp"
 
 namespace mica::reference {
 
