@@ -133,7 +133,8 @@ Real visible_facet_area(Real n_dot_v, Real roughness) {
 /// Smith masking-shadowing and Schlick's Fresnel.
 template <scalar_number Real>
 struct albedo_terms {
-    Real scale, bias;
+    Real scale; ///< what f0 is multiplied by
+    Real bias;  ///< what is added
 
     /// E(f0), band by band.
     rgb<Real> operator()(rgb<Real> f0) const { return scale * f0 + rgb<Real>{bias, bias, bias}; }
