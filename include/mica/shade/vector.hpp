@@ -34,6 +34,13 @@ MICA_HOST_DEVICE constexpr vector3<Real> cross(vector3<Real> a, vector3<Real> b)
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+template <real_number Real>
+MICA_HOST_DEVICE constexpr vector3<Real> select(const mask_of<Real>& mask, vector3<Real> if_true,
+                                                vector3<Real> if_false) {
+    return {select(mask, if_true.x, if_false.x), select(mask, if_true.y, if_false.y),
+            select(mask, if_true.z, if_false.z)};
+}
+
 /// a / |a|; a must not be zero.
 template <real_number Real>
 MICA_HOST_DEVICE constexpr vector3<Real> normalized(vector3<Real> a) {
