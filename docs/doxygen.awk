@@ -1,10 +1,13 @@
-# Sources as Doxygen reads them. The comment at the top becomes the page of the file or of the example, what is no name of the
+# Sources and pages as Doxygen reads them. In pages, links to examples lead to their pages. In sources, the comment at the top becomes the page of the file or of the example, what is no name of the
 # library's is left out, and what is text stays text. Lines keep their order and nearly their numbers.
 #
 #     awk -f docs/doxygen.awk include/mica/law/exact.hpp
+FILENAME ~ /\.md$/ { gsub(/\]\([.\/]*examples\//, "]("); gsub(/\.cpp\)/, "_8cpp-example.html)"); print; next }
+
 FNR == 1 { at_top = sub(/^\/\/ mica\/[^ :]*: /, "/// @file\n///\n/// ") || sub(/^\/\/ /, "/// @example " name(FILENAME) "\n/// ") }
 at_top && /^\/\/($|[^\/])/ { sub(/^\/\//, "///") }
 !/^\/\// { at_top = 0 }
+FILENAME ~ /\.cpp$/ && !at_top { exit } # the page has the whole file
 
 # Macros that a header undefines again, and words in front of a function that are not for its callers.
 /^#(define|undef) MICA_(PACK|PAIR|SMALLER|LARGER)_/ { in_macro = 1 }

@@ -34,6 +34,7 @@ MICA_HOST_DEVICE constexpr vector3<Real> cross(vector3<Real> a, vector3<Real> b)
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/// if_true where the mask holds, if_false elsewhere.
 template <real_number Real>
 MICA_HOST_DEVICE constexpr vector3<Real> select(const mask_of<Real>& mask, vector3<Real> if_true,
                                                 vector3<Real> if_false) {
