@@ -15,6 +15,9 @@ in_macro { in_macro = /\\$/; print ""; next }
 /^ *MICA_(PACK|PAIR)_[A-Z]*\(/ { print ""; next }
 FILENAME !~ /config\.hpp$/ && !/^ *\/\// { gsub(/MICA_(HOST_DEVICE|FLATTEN|WIDE|UNROLL|CONTRACT) ?/, "") }
 
+# A law says of itself what its header says.
+FILENAME ~ /\/law\// && /^(struct|class) [a-z_]*(binomial|_distribution) {$/ { $0 = "/** @copydetails " name(FILENAME) " */ " $0 }
+
 # The comment behind several names is that of each.
 /^ *[A-Za-z][A-Za-z_0-9:<>]* [a-z_0-9]+( = [0-9.]+)?(, [a-z_0-9]+( = [0-9.]+)?)+; *\/\/\/< / { $0 = one_by_one($0) }
 

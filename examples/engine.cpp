@@ -63,7 +63,7 @@ mica::glint_material glints_of(const engine::material& from) {
 }
 
 using pixels = mica::pack<float, mica::native_lanes<float>>;
-constexpr int lanes = mica::lanes_of<pixels>;
+constexpr int lane_count = mica::lanes_of<pixels>;
 
 void set_lane(mica::vector3<pixels>& to, int i, engine::float3 from) {
     to.x.set(i, from.x);
@@ -71,9 +71,9 @@ void set_lane(mica::vector3<pixels>& to, int i, engine::float3 from) {
     to.z.set(i, from.z);
 }
 
-mica::shading_point<pixels> points_of(const std::array<engine::surface, lanes>& surfaces) {
+mica::shading_point<pixels> points_of(const std::array<engine::surface, lane_count>& surfaces) {
     mica::shading_point<pixels> point{};
-    for (int i = 0; i < lanes; ++i) {
+    for (int i = 0; i < lane_count; ++i) {
         const engine::surface& from = surfaces[static_cast<std::size_t>(i)];
         set_lane(point.normal, i, from.normal);
         set_lane(point.tangent, i, from.tangent);
@@ -129,10 +129,10 @@ void shade_tile(const Kernel& kernel, const engine::frame& frame, const engine::
                 std::vector<float>& smooth) {
     const std::uint32_t seed = 7; // of the surface: the same in every tile and every frame
     for (int y = tile.top; y < tile.bottom; ++y)
-        for (int x = tile.left; x < tile.right; x += lanes) {
-            const int here = std::min(lanes, tile.right - x); // what is left over repeats the last pixel
-            std::array<engine::surface, lanes> surfaces;
-            for (int i = 0; i < lanes; ++i)
+        for (int x = tile.left; x < tile.right; x += lane_count) {
+            const int here = std::min(lane_count, tile.right - x); // what is left over repeats the last pixel
+            std::array<engine::surface, lane_count> surfaces;
+            for (int i = 0; i < lane_count; ++i)
                 surfaces[static_cast<std::size_t>(i)] = frame.at(x + std::min(i, here - 1), y);
 
             const auto radiance = shade(kernel, points_of(surfaces), material, lights, seed);

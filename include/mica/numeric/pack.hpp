@@ -73,6 +73,7 @@ struct pack_mask {
     using vector = typename detail::vector_of<element, W>::type;
     vector v; ///< the lanes
 
+    /// Lanes of any value.
     pack_mask() = default;
     /// The mask of these lanes.
     MICA_HOST_DEVICE constexpr pack_mask(const vector& lanes) : v(lanes) {}
@@ -126,6 +127,7 @@ struct pack {
     using vector = typename detail::vector_of<T, W>::type;
     vector v; ///< the lanes
 
+    /// Lanes of any value.
     pack() = default;
     /// The same lanes.
     MICA_HOST_DEVICE constexpr pack(const pack& other) : v(other.v) {}

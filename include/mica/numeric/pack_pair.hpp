@@ -37,6 +37,7 @@ struct pack_pair {
     Pack low;  ///< the first lanes
     Pack high; ///< the others
 
+    /// Lanes of any value.
     pack_pair() = default;
     /// The lanes of both.
     MICA_HOST_DEVICE pack_pair(const Pack& l, const Pack& h) : low(l), high(h) {}

@@ -14,6 +14,7 @@
 
 #include "../config.hpp"
 
+/// Slow truths that the rest is tested against.
 namespace mica::reference {
 
 /// One facet: its place in uv, and the slopes of its normal along u and v.

@@ -208,6 +208,7 @@ struct bilinear_table {
 /// grazing angles (n.v < 0.05) of very smooth surfaces (roughness < 0.01) (tests/microfacet_test.cpp).
 class microfacet_table {
   public:
+    /// Computes the tables.
     microfacet_table() {
         for (std::size_t row = 0; row < visible_size; ++row) {
             const double alpha = row_roughness(row, visible_size);
