@@ -1,8 +1,16 @@
-# Sources and pages as Doxygen reads them. In pages, links to examples lead to their pages. In sources, the comment at the top becomes the page of the file or of the example, what is no name of the
-# library's is left out, and what is text stays text. Lines keep their order and nearly their numbers.
+# Sources and pages as Doxygen reads them. In a source, the comment at the top becomes the page of the file or of the example, what
+# is no name of the library's is left out, and what is text stays text; lines keep their order and nearly their numbers. In a
+# page, links to examples lead to their pages.
 #
 #     awk -f docs/doxygen.awk include/mica/law/exact.hpp
-FILENAME ~ /\.md$/ { gsub(/\]\([.\/]*examples\//, "]("); gsub(/\.cpp\)/, "_8cpp-example.html)"); print; next }
+FILENAME ~ /\.md$/ {
+    while (match($0, /\]\([.\/]*examples\/[a-z_]*\.cpp\)/)) {
+        link = substr($0, RSTART, RLENGTH - 5)
+        $0 = substr($0, 1, RSTART - 1) "](" name(link) "_8cpp-example.html)" substr($0, RSTART + RLENGTH)
+    }
+    print
+    next
+}
 
 FNR == 1 { at_top = sub(/^\/\/ mica\/[^ :]*: /, "/// @file\n///\n/// ") || sub(/^\/\/ /, "/// @example " name(FILENAME) "\n/// ") }
 at_top && /^\/\/($|[^\/])/ { sub(/^\/\//, "///") }
