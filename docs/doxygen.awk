@@ -60,9 +60,13 @@ function escaped(line, parts, count, i, result) {
     match(line, /\/\/\/<?/)
     result = substr(line, 1, RSTART + RLENGTH - 1)
     count = split(substr(line, RSTART + RLENGTH), parts, "`")
-    for (i = 1; i <= count; ++i) {
-        if (i % 2) gsub(/</, "\\\\<", parts[i])
-        result = result (i > 1 ? "`" : "") parts[i]
-    }
+    for (i = 1; i <= count; ++i) result = result (i > 1 ? "`" : "") (i % 2 ? without_tags(parts[i]) : parts[i])
+    return result
+}
+
+function without_tags(text, parts, count, i, result) { # not by gsub: awks differ in what a \ in its replacement means
+    count = split(text, parts, "<")
+    result = parts[1]
+    for (i = 2; i <= count; ++i) result = result "\\<" parts[i]
     return result
 }

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Does what the README's "Your first glint" says, as it stands there, in an empty folder:  first_glint_test.sh SOURCE_DIR
+# Does what the README's "Your first glint" says, as it stands there, in an empty folder:
+#     first_glint_test.sh SOURCE_DIR CMAKE_GENERATOR
 set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -21,6 +22,6 @@ commands_print() { # what the commands of block $1 print, but for the build's ow
     }
 }
 commands_print 2
-export CMAKE_GENERATOR=Ninja # what tools/install has
+export CMAKE_GENERATOR="$2"
 commands_print 5
 printf 'the README leads to a glint by g++ and by CMake\n'
