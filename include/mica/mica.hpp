@@ -41,6 +41,7 @@
 #include "grid/simplex.hpp"
 #include "grid/tetrahedron.hpp"
 
+#include "shade/contour_area.hpp"
 #include "shade/effects.hpp"
 #include "shade/environment.hpp"
 #include "shade/environment_classes.hpp"
