@@ -44,6 +44,7 @@ namespace mica {}
 #include "grid/simplex.hpp"
 #include "grid/tetrahedron.hpp"
 
+#include "shade/contour_area.hpp"
 #include "shade/effects.hpp"
 #include "shade/environment.hpp"
 #include "shade/environment_classes.hpp"
