@@ -37,22 +37,24 @@ struct directional_light {
 
 /// From a small solid angle, the sun among them (KK24): p = D(h) Omega / (4 l.h) / D_H, at most 1.
 struct sun_light {
-    vector3<float> towards; ///< the middle, of length 1
-    rgb<float> radiance;
+    vector3<float> towards;      ///< the middle, of length 1
+    rgb<float> radiance;         ///< uniform over the disc
     float half_angle = 0.00465F; ///< radians; the sun's by default. Omega = 2 pi (1 - cos half_angle)
 };
 
 /// Shines to the side of cross(half_u, half_v); the two are perpendicular or not.
 struct rectangle_light {
-    vector3<float> centre, half_u, half_v;
-    rgb<float> radiance;
+    vector3<float> centre;         ///< in the scene, as shading_point::position
+    vector3<float> half_u, half_v; ///< from the centre to the middle of an edge
+    rgb<float> radiance;           ///< the same in all directions
 };
 
 /// Shines to the side of its normal, which is of length 1.
 struct disk_light {
-    vector3<float> centre, normal;
-    float radius;
-    rgb<float> radiance;
+    vector3<float> centre; ///< in the scene, as shading_point::position
+    vector3<float> normal; ///< of length 1
+    float radius;          ///< > 0
+    rgb<float> radiance;   ///< the same in all directions
 };
 
 namespace detail {
