@@ -17,37 +17,41 @@ namespace mica {
 
 /// A point of an equirectangular map: u in [0,1) from left to right, v in [0,1] from top to bottom.
 struct equirect_point {
-    float u, v;
+    float u; ///< from left to right
+    float v; ///< from top to bottom
 };
 
 /// The point of the map in direction w: +y is the top, -z the middle, +x right of it. w of length 1.
-inline equirect_point equirect_of(vector3<float> w) {
+MICA_HOST_DEVICE inline equirect_point equirect_of(vector3<float> w) {
     constexpr float pi = 3.14159265358979F;
     const float u = std::atan2(w.x, -w.z) / (2 * pi) + 0.5F;
     return {u < 1 ? u : 0.F, std::acos(clamp(w.y, -1.F, 1.F)) / pi};
 }
 
 /// The direction of a point of the map.
-inline vector3<float> direction_of(equirect_point point) {
+MICA_HOST_DEVICE inline vector3<float> direction_of(equirect_point point) {
     constexpr float pi = 3.14159265358979F;
     const float azimuth = 2 * pi * (point.u - 0.5F), polar = pi * point.v;
     return {std::sin(polar) * std::sin(azimuth), std::cos(polar), -std::sin(polar) * std::cos(azimuth)};
 }
 
 /// A grid of texels over the sphere, row 0 at the top; texel (x, y) is centred at ((x+1/2)/width, (y+1/2)/height).
-template <class Texel>
+template <class Texel, class Texels = std::vector<Texel>>
 struct equirect_image {
-    std::size_t width = 0, height = 0;
-    std::vector<Texel> texels; ///< width * height, row by row
+    std::size_t width = 0;  ///< in texels
+    std::size_t height = 0; ///< in texels
+    Texels texels;          ///< width * height, row by row
 
-    const Texel& at(std::size_t x, std::size_t y) const { return texels[y * width + x]; }
+    /// Column x, row y.
+    MICA_HOST_DEVICE constexpr const Texel& at(std::size_t x, std::size_t y) const { return texels[y * width + x]; }
 
-    /// The four texels around a direction and their bilinear weights. Beyond a pole lies the same row, half way round.
+    /// A texel near a direction. Beyond a pole lies the same row, half way round.
     struct tap {
-        std::size_t index;
-        float weight;
+        std::size_t index; ///< in texels
+        float weight;      ///< bilinear, >= 0
     };
-    std::array<tap, 4> taps(vector3<float> w) const {
+    /// The four texels around direction w, of length 1; their weights sum to 1.
+    MICA_HOST_DEVICE std::array<tap, 4> taps(vector3<float> w) const {
         const equirect_point point = equirect_of(w);
         const float x = point.u * static_cast<float>(width) - 0.5F, y = point.v * static_cast<float>(height) - 0.5F;
         const float x0 = std::floor(x), y0 = std::floor(y);
@@ -91,6 +95,7 @@ class environment_map {
             }
     }
 
+    /// The texels.
     const equirect_image<rgb<float>>& image() const { return image_; }
 
     /// Radiance from direction w, bilinear.
