@@ -152,7 +152,7 @@ class environment_levels {
     }
 
     /// L_1 = 0 .. L_K, ascending.
-    const std::array<float, K>& radiance() const { return radiance_; }
+    MICA_HOST_DEVICE const std::array<float, K>& radiance() const { return radiance_; }
 
     /// w_1 .. w_K for a luminance >= 0; one beyond the top level is of the top level.
     std::array<float, K> indicators(float luminance) const {

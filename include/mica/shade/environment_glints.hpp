@@ -28,7 +28,8 @@ struct environment_lobe {
 
 /// The lobe in published levels: all of the colour of the whole, as bright as L_k is beside the others.
 template <std::size_t K>
-environment_lobe<float, K> lobe_of(const prefiltered_environment<K>& environment, vector3<float> r, float roughness) {
+MICA_HOST_DEVICE environment_lobe<float, K> lobe_of(const prefiltered_environment<K>& environment, vector3<float> r,
+                                                    float roughness) {
     const auto seen = environment(r, roughness);
     const auto& levels = environment.levels().radiance();
     environment_lobe<float, K> lobe{{}, seen.indicator};
@@ -45,7 +46,16 @@ environment_lobe<float, K> lobe_of(const prefiltered_environment<K>& environment
 
 /// The lobe in local classes.
 template <std::size_t K>
-environment_lobe<float, K> lobe_of(const prefiltered_classes<K>& environment, vector3<float> r, float roughness) {
+MICA_HOST_DEVICE environment_lobe<float, K> lobe_of(const prefiltered_classes<K>& environment, vector3<float> r,
+                                                    float roughness) {
+    const auto seen = environment(r, roughness);
+    return {seen.radiance, seen.share};
+}
+
+/// The same on a GPU.
+template <std::size_t K>
+MICA_HOST_DEVICE environment_lobe<float, K> lobe_of(const prefiltered_classes_view<K>& environment, vector3<float> r,
+                                                    float roughness) {
     const auto seen = environment(r, roughness);
     return {seen.radiance, seen.share};
 }
@@ -62,8 +72,8 @@ struct environment_seen {
 
 /// Nothing from behind the surface.
 template <std::size_t K, class Environment>
-environment_seen<float, K> seen_of(const Environment& environment, const microfacet_table& table,
-                                   const glint_material& material, vector3<float> r, float n_dot_v) {
+MICA_HOST_DEVICE environment_seen<float, K> seen_of(const Environment& environment, const microfacet_table& table,
+                                                    const glint_material& material, vector3<float> r, float n_dot_v) {
     if (!(n_dot_v > 0)) return {};
     return {lobe_of(environment, r, material.roughness), table.albedo(n_dot_v, material.roughness)(material.f0),
             table.visible_fraction(n_dot_v, material.roughness)};
@@ -71,8 +81,8 @@ environment_seen<float, K> seen_of(const Environment& environment, const microfa
 
 /// Packs look up their lanes one by one.
 template <std::size_t K, real_number Real, class Environment>
-environment_seen<Real, K> seen_of(const Environment& environment, const microfacet_table& table,
-                                  const glint_material& material, vector3<Real> r, Real n_dot_v) {
+MICA_HOST_DEVICE environment_seen<Real, K> seen_of(const Environment& environment, const microfacet_table& table,
+                                                   const glint_material& material, vector3<Real> r, Real n_dot_v) {
     environment_seen<Real, K> seen{};
     for (int i = 0; i < lanes_of<Real>; ++i) {
         const vector3<float> towards{lane(r.x, i), lane(r.y, i), lane(r.z, i)};
@@ -92,8 +102,9 @@ environment_seen<Real, K> seen_of(const Environment& environment, const microfac
 /// The classes of an environment (prefiltered_classes<K> or prefiltered_environment<K>) in a pixel. All black where the
 /// eye is behind the surface.
 template <real_number Real, template <std::size_t> class Environment, std::size_t K>
-std::array<light_class<Real>, K> light_classes(const shading_point<Real>& point, const glint_material& material,
-                                               const Environment<K>& environment, const microfacet_table& table) {
+MICA_HOST_DEVICE std::array<light_class<Real>, K>
+light_classes(const shading_point<Real>& point, const glint_material& material, const Environment<K>& environment,
+              const microfacet_table& table) {
     const Real n_dot_v = dot(point.normal, point.wo);
     const auto seen = detail::seen_of<K>(environment, table, material, reflected(point.wo, point.normal), n_dot_v);
     std::array<light_class<Real>, K> classes;
@@ -112,8 +123,9 @@ std::array<light_class<Real>, K> light_classes(const shading_point<Real>& point,
 
 /// The radiance of a pixel under an environment. `seed` picks the realisation.
 template <class Kernel, real_number Real, template <std::size_t> class Environment, std::size_t K>
-glint_radiance<Real> shade(const Kernel& kernel, const shading_point<Real>& point, const glint_material& material,
-                           const Environment<K>& environment, const microfacet_table& table, std::uint32_t seed) {
+MICA_HOST_DEVICE glint_radiance<Real> shade(const Kernel& kernel, const shading_point<Real>& point,
+                                            const glint_material& material, const Environment<K>& environment,
+                                            const microfacet_table& table, std::uint32_t seed) {
     vector3<Real> half_of_eye{};
     if constexpr (Kernel::has_half_vectors) half_of_eye = Real(0.5) * point.local(point.wo);
     return kernel(point, material, light_classes(point, material, environment, table), half_of_eye, seed);

@@ -137,7 +137,7 @@ struct albedo_terms {
     Real bias;  ///< what is added
 
     /// E(f0), band by band.
-    rgb<Real> operator()(rgb<Real> f0) const { return scale * f0 + rgb<Real>{bias, bias, bias}; }
+    MICA_HOST_DEVICE rgb<Real> operator()(rgb<Real> f0) const { return scale * f0 + rgb<Real>{bias, bias, bias}; }
 };
 
 /// By sampling visible normals (Heitz 2018). They are points of a disc; the strata are finer towards its edge, where
@@ -186,7 +186,7 @@ template <std::size_t Size>
 struct bilinear_table {
     std::array<std::array<float, Size>, Size> value; ///< [y][x]
 
-    float operator()(float x, float y) const {
+    MICA_HOST_DEVICE float operator()(float x, float y) const {
         const float scaled_x = x * (Size - 1), scaled_y = y * (Size - 1);
         const auto column = static_cast<std::size_t>(minimum(scaled_x, Size - 2.F));
         const auto row = static_cast<std::size_t>(minimum(scaled_y, Size - 2.F));
@@ -232,14 +232,14 @@ class microfacet_table {
 
     /// E_D / D_H: the share of all facets that reflect the eye's ray to above the horizon, in [0.29, 1].
     /// n_dot_v and roughness in [0, 1]; beyond, the nearer end.
-    float visible_fraction(float n_dot_v, float roughness) const {
+    MICA_HOST_DEVICE float visible_fraction(float n_dot_v, float roughness) const {
         const float alpha = clamp(roughness, smallest_roughness, 1.F);
         const float mu = clamp(n_dot_v, 0.F, 1.F);
         return visible_(mu * (1 + alpha) / (mu + alpha), std::sqrt(alpha));
     }
 
     /// Directional albedo E(f0) = f0 scale + bias; arguments as above.
-    albedo_terms<float> albedo(float n_dot_v, float roughness) const {
+    MICA_HOST_DEVICE albedo_terms<float> albedo(float n_dot_v, float roughness) const {
         const float x = std::sqrt(clamp(n_dot_v, 0.F, 1.F)), y = std::sqrt(clamp(roughness, 0.F, 1.F));
         return {scale_(x, y), bias_(x, y)};
     }

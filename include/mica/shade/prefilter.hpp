@@ -12,7 +12,7 @@
 // sun 1e5 times brighter than the rest: 2 % of the largest filtered value, 3 % with the bilinear interpolation of the
 // result (tests/environment_test.cpp, roughness 0.05 to 1). Channels are float: 8 bits are not enough (KK25 Fig. 9).
 //
-// Host only: it allocates.
+// Filtering is for hosts, it allocates; prefiltered_classes_view looks up on a GPU what was filtered.
 #pragma once
 
 #include <cstddef>
@@ -198,7 +198,39 @@ struct prefilter_quality {
 /// (tests/classes_test.cpp holds it at six places).
 inline constexpr prefilter_quality every_frame{48, 2, 0.6F, 0.25F};
 
+/// A map filtered for a roughness. Texels: a std::vector, or a std::span of what lies elsewhere.
+template <class Value, class Texels = std::vector<Value>>
+struct filtered_map {
+    float roughness;                     ///< alpha, >= 0
+    equirect_image<Value, Texels> image; ///< what the lobe around each direction sees
+};
+
 namespace detail {
+
+template <class Value, class Image>
+MICA_HOST_DEVICE void add(Value& sum, const Image& image, vector3<float> r, float weight) {
+    for (const auto& tap : image.taps(r))
+        for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += weight * tap.weight * image.texels[tap.index][c];
+}
+
+/// What maps of ascending roughness say of the lobe around r: between their roughnesses linear in perceptual roughness,
+/// beyond them the nearest.
+template <class Value, class Maps>
+MICA_HOST_DEVICE Value value_in(const Maps& maps, vector3<float> r, float roughness) {
+    std::size_t upper = 0;
+    while (upper + 1 < maps.size() && maps[upper].roughness < roughness) ++upper;
+    const std::size_t lower = upper == 0 || roughness >= maps[upper].roughness ? upper : upper - 1;
+    Value value{};
+    if (lower == upper) {
+        add(value, maps[upper].image, r, 1);
+    } else {
+        const float low = std::sqrt(maps[lower].roughness), high = std::sqrt(maps[upper].roughness);
+        const float part = (std::sqrt(roughness) - low) / (high - low);
+        add(value, maps[lower].image, r, 1 - part);
+        add(value, maps[upper].image, r, part);
+    }
+    return value;
+}
 
 /// Maps of so many channels, filtered for a set of roughnesses. The first `Radiance` channels add up to the light.
 template <std::size_t Channels, std::size_t Radiance>
@@ -221,29 +253,15 @@ class filtered_maps {
         }
     }
 
-    /// Between the given roughnesses linear in perceptual roughness, beyond them the nearest.
-    value_type operator()(vector3<float> r, float roughness) const {
-        std::size_t upper = 0;
-        while (upper + 1 < maps_.size() && maps_[upper].roughness < roughness) ++upper;
-        const std::size_t lower = upper == 0 || roughness >= maps_[upper].roughness ? upper : upper - 1;
-        value_type value{};
-        if (lower == upper) {
-            add(value, maps_[upper].image, r, 1);
-        } else {
-            const float low = std::sqrt(maps_[lower].roughness), high = std::sqrt(maps_[upper].roughness);
-            const float part = (std::sqrt(roughness) - low) / (high - low);
-            add(value, maps_[lower].image, r, 1 - part);
-            add(value, maps_[upper].image, r, part);
-        }
-        return value;
+    /// value_in() them.
+    MICA_HOST_DEVICE value_type operator()(vector3<float> r, float roughness) const {
+        return value_in<value_type>(maps_, r, roughness);
     }
+
+    std::span<const filtered_map<value_type>> maps() const { return maps_; }
 
   private:
     using image_type = equirect_image<value_type>;
-    struct filtered_map {
-        float roughness;
-        image_type image;
-    };
     static constexpr float pi = std::numbers::pi_v<float>;
 
     static bool narrower_than_a_texel(float roughness, std::size_t height) {
@@ -270,12 +288,7 @@ class filtered_maps {
         return result;
     }
 
-    static void add(value_type& sum, const image_type& image, vector3<float> r, float weight) {
-        for (const auto& tap : image.taps(r))
-            for (std::size_t c = 0; c < Channels; ++c) sum[c] += weight * tap.weight * image.texels[tap.index][c];
-    }
-
-    std::vector<filtered_map> maps_;
+    std::vector<filtered_map<value_type>> maps_;
 };
 
 } // namespace detail
@@ -301,11 +314,11 @@ class prefiltered_environment {
           maps_(map.image().width, map.image().height, values_of(map, levels), roughnesses, loop, quality) {}
 
     /// The levels that the indicators are of.
-    const environment_levels<K>& levels() const { return levels_; }
+    MICA_HOST_DEVICE const environment_levels<K>& levels() const { return levels_; }
 
     /// The lobe of a roughness around direction r; between the given roughnesses linear in perceptual roughness,
     /// beyond them the nearest.
-    sample operator()(vector3<float> r, float roughness) const {
+    MICA_HOST_DEVICE sample operator()(vector3<float> r, float roughness) const {
         const auto value = maps_(r, roughness);
         sample result{{value[0], value[1], value[2]}, {}};
         std::copy(value.begin() + bands, value.end(), result.indicator.begin());
@@ -358,9 +371,19 @@ class prefiltered_classes {
         : maps_(map.image().width, map.image().height, values_of(map, classes, visible), roughnesses, loop, quality) {}
 
     /// The lobe of a roughness around direction r, as prefiltered_environment has it.
-    sample operator()(vector3<float> r, float roughness) const {
-        const auto value = maps_(r, roughness);
-        sample result;
+    MICA_HOST_DEVICE sample operator()(vector3<float> r, float roughness) const {
+        return sample_of(maps_(r, roughness));
+    }
+
+    /// The radiance of all classes, band by band, then their shares.
+    using value_type = std::array<float, 4 * K>;
+
+    /// The filtered maps, of ascending roughness: what a GPU needs (prefiltered_classes_view).
+    std::span<const filtered_map<value_type>> maps() const { return maps_.maps(); }
+
+    /// What a value of a map says.
+    MICA_HOST_DEVICE static constexpr sample sample_of(const value_type& value) {
+        sample result{};
         for (std::size_t k = 0; k < K; ++k) {
             result.radiance[k] = {value[3 * k], value[3 * k + 1], value[3 * k + 2]};
             result.share[k] = value[3 * K + k];
@@ -395,6 +418,20 @@ class prefiltered_classes {
     }
 
     maps_type maps_;
+};
+
+/// The same, of maps that lie elsewhere: in the memory of a GPU, where examples/gpu puts them.
+template <std::size_t K>
+struct prefiltered_classes_view {
+    using value_type = typename prefiltered_classes<K>::value_type;    ///< a texel
+    using map = filtered_map<value_type, std::span<const value_type>>; ///< of one roughness
+
+    std::span<const map> maps; ///< at least one, of ascending roughness
+
+    /// The lobe of a roughness around direction r.
+    MICA_HOST_DEVICE typename prefiltered_classes<K>::sample operator()(vector3<float> r, float roughness) const {
+        return prefiltered_classes<K>::sample_of(detail::value_in<value_type>(maps, r, roughness));
+    }
 };
 
 } // namespace mica
