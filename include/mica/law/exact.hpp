@@ -12,7 +12,7 @@
 // Departures: BTRS accepts against the saddle-point form of the probability (Loader 2000, "Fast and accurate
 //   computation of binomial probabilities") instead of differences of log-factorials, which at N = 1e15 have no
 //   correct digit left.
-// Not for a GPU: doubles and a loop. On a pack it runs lane by lane.
+// On a GPU for checking only: doubles and loops of different lengths. On a pack it runs lane by lane.
 #pragma once
 
 #include <cmath>
@@ -24,7 +24,7 @@ namespace mica {
 namespace detail {
 
 /// log(n!) - log(sqrt(2 pi n) (n/e)^n), n >= 1, the error of Stirling's formula. Absolute error 1e-12.
-inline double stirling_error(double n) {
+MICA_HOST_DEVICE inline double stirling_error(double n) {
     constexpr double exactly[] = {0.,
                                   0.0810614667953272582,
                                   0.0413406959554092941,
@@ -42,7 +42,7 @@ inline double stirling_error(double n) {
 }
 
 /// x log(x / mean) + mean - x >= 0 without cancellation near x = mean (Loader's bd0).
-inline double deviance(double x, double mean) {
+MICA_HOST_DEVICE inline double deviance(double x, double mean) {
     const double relative = (x - mean) / mean;
     if (std::abs(relative) < 0.1) {
         // log(1+r) = 2 atanh(v), v = r/(2+r): deviance = mean (r v + 2 (1+r) (v^3/3 + v^5/5 + ...))
@@ -62,7 +62,7 @@ inline double deviance(double x, double mean) {
 }
 
 /// The probability of k successes in n trials, n >= 1, 0 <= k <= n, 0 < p < 1.
-inline double binomial_probability(double k, double n, double p) {
+MICA_HOST_DEVICE inline double binomial_probability(double k, double n, double p) {
     const double q = 1 - p;
     if (k <= 0) return std::exp(n * std::log1p(-p));
     if (k >= n) return std::exp(n * std::log(p));
@@ -73,7 +73,7 @@ inline double binomial_probability(double k, double n, double p) {
 
 /// n p < 10, p <= 1/2: the largest k with xi < P(X >= k), so small xi means many successes.
 template <class Uniform>
-double binomial_by_inversion(double n, double p, Uniform& xi) {
+MICA_HOST_DEVICE double binomial_by_inversion(double n, double p, Uniform& xi) {
     double tail = -std::expm1(n * std::log1p(-p)); // P(X > 0)
     double mass = 1 - tail;                        // P(X = 0)
     const double odds = p / (1 - p);
@@ -90,7 +90,7 @@ double binomial_by_inversion(double n, double p, Uniform& xi) {
 
 /// n p >= 10, p <= 1/2: Hormann's algorithm BTRS; names as in the paper.
 template <class Uniform>
-double binomial_by_rejection(double n, double p, Uniform& xi) {
+MICA_HOST_DEVICE double binomial_by_rejection(double n, double p, Uniform& xi) {
     const double spq = std::sqrt(n * p * (1 - p));
     const double b = 1.15 + 2.53 * spq;
     const double a = -0.0873 + 0.0248 * b + 0.01 * p;
@@ -114,7 +114,7 @@ double binomial_by_rejection(double n, double p, Uniform& xi) {
 
 /// Integer n >= 0 and p in [0,1].
 template <class Uniform>
-double exact_binomial_successes(double n, double p, Uniform& xi) {
+MICA_HOST_DEVICE double exact_binomial_successes(double n, double p, Uniform& xi) {
     if (n <= 0 || p <= 0) return 0;
     if (p >= 1) return n;
     if (p > 0.5) return n - exact_binomial_successes(n, 1 - p, xi);
@@ -129,7 +129,7 @@ struct exact_binomial {
 
     /// The counts; arguments as in binomial_law.hpp. Draws one uniform of a source that can fork, 1 to 3 on average of any other.
     template <real_number Real, class Uniform>
-    counts<Real> operator()(Real trials, Real probability, Uniform&& xi) const {
+    MICA_HOST_DEVICE counts<Real> operator()(Real trials, Real probability, Uniform&& xi) const {
         auto&& stream = detail::forked(xi);
         const auto [n, p] = detail::in_domain(trials, probability);
         if constexpr (scalar_number<Real>) {
@@ -147,7 +147,7 @@ struct exact_binomial {
 
   private:
     template <class Scalar, class Uniform>
-    static counts<Scalar> one_lane(Scalar trials, Scalar probability, Uniform&& xi) {
+    MICA_HOST_DEVICE static counts<Scalar> one_lane(Scalar trials, Scalar probability, Uniform&& xi) {
         double n = std::floor(static_cast<double>(trials));
         const double fraction = static_cast<double>(trials) - n;
         if (fraction > 0 && static_cast<double>(xi()) < fraction) n += 1;
@@ -157,7 +157,7 @@ struct exact_binomial {
 
     /// The uniforms of lane i: its own stream, or lane i of every draw where the source has no lanes of its own.
     template <class Uniform>
-    static auto lane_of(Uniform& xi, int i) {
+    MICA_HOST_DEVICE static auto lane_of(Uniform& xi, int i) {
         if constexpr (requires { xi.lane(i); })
             return xi.lane(i);
         else
