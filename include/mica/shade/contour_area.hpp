@@ -76,11 +76,10 @@ struct circle_arc {
 /// Kronrod's rule of 15 nodes and, at the odd ones and the middle, Gauss's of 7: nodes and weights of [0, 1]; those of [-1, 0]
 /// mirror them (Piessens et al. 1983, QUADPACK, qk15).
 struct gauss_kronrod {
-    static constexpr float node[] = {0.991455371F, 0.949107912F, 0.864864423F, 0.741531186F,
-                                     0.586087235F, 0.405845151F, 0.207784955F};
-    static constexpr float kronrod[] = {0.0229353220F, 0.0630920926F, 0.104790010F, 0.140653260F,
-                                        0.169004727F,  0.190350578F,  0.204432940F, 0.209482141F};
-    static constexpr float gauss[] = {0.129484966F, 0.279705391F, 0.381830051F, 0.417959184F};
+    float node[7] = {0.991455371F, 0.949107912F, 0.864864423F, 0.741531186F, 0.586087235F, 0.405845151F, 0.207784955F};
+    float kronrod[8] = {0.0229353220F, 0.0630920926F, 0.104790010F, 0.140653260F,
+                        0.169004727F,  0.190350578F,  0.204432940F, 0.209482141F};
+    float gauss[4] = {0.129484966F, 0.279705391F, 0.381830051F, 0.417959184F};
 };
 
 /// Facets seen from wo; everything in the surface's frame.
@@ -260,12 +259,13 @@ class contour_area {
         const Real length = graded.end - graded.start;
         const Real reach = Real(0.5F * (to - from)) * length, middle = graded.start + Real(0.5F * (to + from)) * length;
         const Real centre = integrand(graded, middle, beyond);
-        Real kronrod = Real(gauss_kronrod::kronrod[7]) * centre, gauss = Real(gauss_kronrod::gauss[3]) * centre;
+        constexpr gauss_kronrod rule{}; // here, since a GPU sees no static arrays
+        Real kronrod = Real(rule.kronrod[7]) * centre, gauss = Real(rule.gauss[3]) * centre;
         for (int i = 0; i < 7; ++i) {
-            const Real away = Real(gauss_kronrod::node[i]) * reach;
+            const Real away = Real(rule.node[i]) * reach;
             const Real both = integrand(graded, middle - away, beyond) + integrand(graded, middle + away, beyond);
-            kronrod = kronrod + Real(gauss_kronrod::kronrod[i]) * both;
-            if (i % 2 == 1) gauss = gauss + Real(gauss_kronrod::gauss[i / 2]) * both;
+            kronrod = kronrod + Real(rule.kronrod[i]) * both;
+            if (i % 2 == 1) gauss = gauss + Real(rule.gauss[i / 2]) * both;
         }
         return {reach * kronrod, abs(reach * (kronrod - gauss))};
     }
