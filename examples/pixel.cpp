@@ -51,3 +51,7 @@ int main() {
                 static_cast<double>(glint.g), static_cast<double>(glint.b), static_cast<double>(under_sky.r),
                 static_cast<double>(under_sky.g), static_cast<double>(under_sky.b));
 }
+
+// Prints:
+//
+//     sun and lamp: 0.230 0.319 0.358, sky: 0.163 0.249 0.383

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The program as its users call it:  glint_cli_test.sh GLINT errors|determinism|environments|comparison|furnace|lights|costs
+# The program as its users call it:  glint_cli_test.sh GLINT errors|determinism|tiles|environments|comparison|furnace|lights|costs
 set -uo pipefail
 glint=$1
 part=$2
@@ -146,6 +146,40 @@ determinism() {
         "$glint" render --shape $shape --size 160x90 --seed 2 -o other.png >/dev/null || fail "another seed"
         ! cmp -s one.png other.png || fail "$shape: another seed gives the same picture"
     done
+}
+
+# One frame in tiles that other processes render, in any order.
+tiles() {
+    local scene="--size 101x67 --light area --lights 2 --tint 0.4" tile
+    "$glint" render $scene -o whole.png >/dev/null && "$glint" render $scene -o whole.exr >/dev/null || fail "whole"
+    for tile in 64,0,37,31 0,0,64,31 0,31,1,36 1,31,100,36; do
+        "$glint" render $scene --tile $tile --threads 1 -o "tile-$tile.exr" >/dev/null || fail "tile $tile"
+    done
+    "$glint" merge tile-*.exr -o merged.png >/dev/null && "$glint" merge tile-*.exr -o merged.exr >/dev/null || fail "merge"
+    cmp whole.png merged.png || fail "the merged picture is not the whole one"
+    cmp whole.exr merged.exr || fail "the merged radiance is not that of the whole picture"
+
+    expect_error 'no tile has pixel 64,0' merge tile-0*.exr tile-1*.exr -o x.png
+    expect_error 'overlaps tile-0,0,64,31.exr' merge tile-*.exr tile-0,0,64,31.exr -o x.png
+    "$glint" render $scene --seed 2 --tile 0,0,1,1 -o other.exr >/dev/null
+    expect_error 'is of another picture than' merge tile-*.exr other.exr -o x.png
+    expect_error 'tile 0,0,102,1 is not within 101x67' render $scene --tile 0,0,102,1 -o x.exr
+    expect_error 'tile 0,0,0,1 is not within' render $scene --tile 0,0,0,1 -o x.exr
+    expect_error 'is not x,y,width,height' render $scene --tile 0,0,1 -o x.exr
+    expect_error 'needs an .exr output' render $scene --tile 0,0,1,1 -o x.png
+    head -c 2000 whole.exr >truncated.exr
+    printf 'not a picture\n' >text.exr
+    expect_error 'truncated.exr: cannot be read as OpenEXR' merge truncated.exr -o x.png
+    expect_error 'text.exr: cannot be read as OpenEXR' merge text.exr -o x.png
+    expect_error 'No such file' merge missing.exr -o x.png
+    expect_error 'required' merge -o x.png
+
+    # Environments too.
+    "$glint" render --size 64x32 -o map.exr >/dev/null
+    "$glint" render --env map.exr --size 32x32 -o lit.png >/dev/null || fail "an environment in OpenEXR"
+    expect_error 'is not twice as wide as high' render --env whole.exr --size 8x8 -o x.png
+    head -c 2000 map.exr >truncated.exr
+    expect_error 'cannot be read as OpenEXR' render --env truncated.exr --size 8x8 -o x.png
 }
 
 environments() {

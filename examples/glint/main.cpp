@@ -46,13 +46,23 @@ void add_counting(CLI::App* command, glint::counting_description& counting) {
 void add_light(CLI::App* command, glint::render_options& scene) {
     command->add_option("--light", scene.light, "environment, wdh20, directional, sun, area or disk")
         ->capture_default_str();
-    command->add_option("--env", scene.environment, "environment map, Radiance .hdr (none: a procedural one)");
+    command->add_option("--env", scene.environment, "environment map, .hdr or .exr (none: a procedural one)");
     command->add_option("--levels", scene.levels, "classes K of the environment's light")->capture_default_str();
     command
         ->add_option("--classes", scene.classes,
                      "what parts the environment's light: brightness, colour, or published: as in KK25")
         ->capture_default_str();
     command->add_option("--occluder", scene.occluder, "x,y,z: a wall; nothing shines from directions on its side");
+}
+
+/// The options of a command that decide what is in its picture, name=value.
+std::string origin_of(const CLI::App& command) {
+    std::string text;
+    for (const CLI::Option* const option : command.get_options())
+        if (option->count() > 0 && !option->check_lname("output") && !option->check_lname("tile") &&
+            !option->check_lname("json") && !option->check_lname("threads"))
+            for (const auto& value : option->results()) text += option->get_name() + "=" + value + " ";
+    return text;
 }
 
 int run(int argc, char** argv) {
@@ -71,7 +81,7 @@ int run(int argc, char** argv) {
     render_command->add_option(
         "--scene", render.scene_file,
         "scene file, JSON: lights, surfaces, effects (docs/effects.md); instead of all options but "
-        "--output and --json");
+        "--tile, --output and --json");
     add_light(render_command, render);
     render_command->add_option("--lights", render.lights, "so many of that light, in an arc, coloured")
         ->capture_default_str();
@@ -82,9 +92,17 @@ int run(int argc, char** argv) {
         ->capture_default_str();
     add_counting(render_command, render.counting);
     render_command->add_option("--seed", render.seed, "which realisation")->capture_default_str();
-    render_command->add_option("-o,--output", render.output, "PNG to write")->capture_default_str();
+    render_command->add_option("--tile", render.tile, "x,y,w,h: only these pixels, to an .exr for glint merge");
+    render_command->add_option("-o,--output", render.output, "PNG, or .exr: linear radiance")->capture_default_str();
     render_command->add_flag("--json", render.json, "print one JSON object about the picture");
     add_threads(render_command);
+
+    glint::merge_options merge;
+    CLI::App* const merge_command =
+        app.add_subcommand("merge", "put the tiles of glint render --tile together, the same bytes as without tiles");
+    merge_command->add_option("tiles", merge.tiles, ".exr files that cover the picture")->required();
+    merge_command->add_option("-o,--output", merge.output, "PNG, or .exr: linear radiance")->capture_default_str();
+    merge_command->add_flag("--json", merge.json, "print one JSON object about the picture");
 
     glint::sheet_options sheet;
     CLI::App* const sheet_command =
@@ -198,14 +216,16 @@ int run(int argc, char** argv) {
     if (render_command->count("--scene") > 0)
         for (const CLI::Option* const option : render_command->get_options())
             if (option->count() > 0 && !option->check_lname("scene") && !option->check_lname("output") &&
-                !option->check_lname("json") && !option->check_lname("threads"))
+                !option->check_lname("json") && !option->check_lname("threads") && !option->check_lname("tile"))
                 throw std::invalid_argument(option->get_name() +
                                             " is for scenes without a file: the file of --scene says it");
     if (render_command->count("--env") > 0 && render.environment.empty()) throw std::invalid_argument("--env is empty");
     std::optional<tbb::global_control> limit;
     if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
 
+    render.origin = origin_of(*render_command);
     if (*render_command) glint::render(render);
+    if (*merge_command) glint::merge(merge);
     if (*sheet_command) glint::sheet(sheet);
     if (*furnace_command) glint::furnace(furnace);
     if (*compare_command && compare_light.scene.light.empty()) glint::compare(compare);

@@ -14,6 +14,8 @@
 #include <stb_image_write.h>
 #include <unistd.h>
 
+#include "frame_file.hpp"
+
 namespace glint {
 
 namespace {
@@ -40,10 +42,6 @@ struct watched_file {
     static int eof(void* self) { return std::feof(static_cast<watched_file*>(self)->file); }
 };
 
-std::runtime_error problem(const std::string& path, const std::string& what) {
-    return std::runtime_error(path + ": " + what);
-}
-
 std::uint8_t srgb_byte(float linear) {
     const float x = std::clamp(linear, 0.F, 1.F);
     const float encoded = x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1 / 2.4F) - 0.055F;
@@ -52,27 +50,32 @@ std::uint8_t srgb_byte(float linear) {
 
 } // namespace
 
+std::runtime_error file_error(const std::string& path, const std::string& what) {
+    return std::runtime_error(path + ": " + what);
+}
+
 mica::environment_map read_environment(const std::string& path) {
     std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) throw problem(path, "is a folder, not an environment map");
+    if (std::filesystem::is_directory(path, ignored)) throw file_error(path, "is a folder, not an environment map");
+    if (path.ends_with(".exr")) return read_exr_environment(path);
     const std::unique_ptr<std::FILE, file_closer> file(std::fopen(path.c_str(), "rb"));
-    if (!file) throw problem(path, std::strerror(errno));
+    if (!file) throw file_error(path, std::strerror(errno));
 
     watched_file watched{file.get()};
     const stbi_io_callbacks callbacks{watched_file::read, watched_file::skip, watched_file::eof};
     if (!stbi_is_hdr_from_callbacks(&callbacks, &watched))
-        throw problem(path, "is not an environment map (expected a Radiance .hdr file)");
+        throw file_error(path, "is not an environment map (expected a Radiance .hdr or OpenEXR .exr file)");
     std::rewind(file.get());
     watched.ran_out = false;
 
     int width = 0, height = 0, bands = 0;
     const std::unique_ptr<float, decltype(&stbi_image_free)> data(
         stbi_loadf_from_callbacks(&callbacks, &watched, &width, &height, &bands, 3), &stbi_image_free);
-    if (watched.ran_out) throw problem(path, "is truncated");
-    if (!data) throw problem(path, std::string("cannot be read: ") + stbi_failure_reason());
+    if (watched.ran_out) throw file_error(path, "is truncated");
+    if (!data) throw file_error(path, std::string("cannot be read: ") + stbi_failure_reason());
     if (width != 2 * height || height < 1)
-        throw problem(path, "is not an environment map: " + std::to_string(width) + "x" + std::to_string(height) +
-                                " is not twice as wide as high");
+        throw file_error(path, "is not an environment map: " + std::to_string(width) + "x" + std::to_string(height) +
+                                   " is not twice as wide as high");
 
     const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
     std::vector<mica::rgb<float>> texels(w * h);
@@ -120,38 +123,42 @@ void draw_text(srgb_picture& picture, const std::string& text, std::size_t left,
     }
 }
 
-png_file::png_file(std::string path) : path_(std::move(path)) {
+output_file::output_file(std::string path) : path_(std::move(path)) {
     std::error_code ignored;
-    if (!path_.ends_with(".png")) throw problem(path_, "cannot be written: pictures are written as .png");
-    if (std::filesystem::is_directory(path_, ignored)) throw problem(path_, "cannot be written: is a folder");
-    const std::string unfinished = unfinished_name();
-    { const file_handle file = open_to_write(unfinished); }
-    std::remove(unfinished.c_str());
+    if (std::filesystem::is_directory(path_, ignored)) throw file_error(path_, "cannot be written: is a folder");
+    const std::string name = unfinished_name();
+    const std::unique_ptr<std::FILE, file_closer> file(std::fopen(name.c_str(), "wb"));
+    if (!file) throw file_error(path_, std::string("cannot be written: ") + std::strerror(errno));
+    discard(name);
 }
 
-std::string png_file::unfinished_name() const { return path_ + "." + std::to_string(::getpid()) + ".part"; }
+std::string output_file::unfinished_name() const { return path_ + "." + std::to_string(::getpid()) + ".part"; }
 
-png_file::file_handle png_file::open_to_write(const std::string& name) const {
-    file_handle file(std::fopen(name.c_str(), "wb"), &std::fclose);
-    if (!file) throw problem(path_, std::string("cannot be written: ") + std::strerror(errno));
-    return file;
+void output_file::discard(const std::string& name) { std::remove(name.c_str()); }
+
+void output_file::publish(const std::string& name) const {
+    if (std::rename(name.c_str(), path_.c_str()) == 0) return;
+    const std::string reason = std::strerror(errno);
+    discard(name);
+    throw file_error(path_, "cannot be written: " + reason);
+}
+
+png_file::png_file(std::string path) : file_(std::move(path)) {
+    if (!file_.path().ends_with(".png")) throw file_error(file_.path(), "cannot be written: a picture is .png");
 }
 
 void png_file::save(const srgb_picture& picture) const {
     const auto write = [](void* file, void* data, int size) {
         std::fwrite(data, 1, static_cast<std::size_t>(size), static_cast<std::FILE*>(file));
     };
-    const std::string unfinished = unfinished_name();
-    file_handle file = open_to_write(unfinished);
-    const bool encoded = stbi_write_png_to_func(write, file.get(), static_cast<int>(picture.width),
-                                                static_cast<int>(picture.height), 3, picture.bytes.data(), 0) != 0;
-    const bool written = encoded && std::fflush(file.get()) == 0 && std::ferror(file.get()) == 0;
-    file.reset();
-    if (!written || std::rename(unfinished.c_str(), path_.c_str()) != 0) {
-        const std::string reason = std::strerror(errno);
-        std::remove(unfinished.c_str());
-        throw problem(path_, "cannot be written: " + reason);
-    }
+    file_.save([&](const std::string& name) {
+        const std::unique_ptr<std::FILE, file_closer> file(std::fopen(name.c_str(), "wb"));
+        const bool encoded =
+            file && stbi_write_png_to_func(write, file.get(), static_cast<int>(picture.width),
+                                           static_cast<int>(picture.height), 3, picture.bytes.data(), 0) != 0;
+        if (!encoded || std::fflush(file.get()) != 0 || std::ferror(file.get()) != 0)
+            throw file_error(file_.path(), std::string("cannot be written: ") + std::strerror(errno));
+    });
 }
 
 } // namespace glint

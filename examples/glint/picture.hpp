@@ -3,7 +3,7 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -26,7 +26,7 @@ struct srgb_picture {
         : width(width), height(height), bytes(3 * width * height, grey) {}
 };
 
-/// An equirectangular Radiance file. Throws std::runtime_error, in one line, where it is missing, truncated, of another
+/// An equirectangular map, Radiance .hdr or OpenEXR. Throws std::runtime_error, in one line, where it is missing, truncated, of another
 /// format, or not twice as wide as high.
 mica::environment_map read_environment(const std::string& path);
 
@@ -37,21 +37,47 @@ void tone_map(const radiance_picture& from, float exposure, srgb_picture& to, st
 void draw_text(srgb_picture& picture, const std::string& text, std::size_t left, std::size_t top, std::size_t scale,
                std::uint8_t grey);
 
-/// A PNG file that appears under its name only when it is whole.
-class png_file {
+/// A file that appears under its name only when it is whole.
+class output_file {
   public:
     /// Throws std::runtime_error where the file cannot be written, so that nobody renders for nothing. Leaves nothing.
+    explicit output_file(std::string path);
+
+    const std::string& path() const { return path_; }
+
+    /// Calls write(name) with the name of a file to fill, which then takes its place. Nothing is left if it throws.
+    template <class Write>
+    void save(const Write& write) const {
+        const std::string name = unfinished_name();
+        try {
+            write(name);
+        } catch (...) {
+            discard(name);
+            throw;
+        }
+        publish(name);
+    }
+
+  private:
+    std::string unfinished_name() const;
+    static void discard(const std::string& name);
+    void publish(const std::string& name) const;
+
+    std::string path_;
+};
+
+/// A PNG file, likewise.
+class png_file {
+  public:
     explicit png_file(std::string path);
 
     void save(const srgb_picture& picture) const;
 
   private:
-    using file_handle = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
-
-    std::string unfinished_name() const;
-    file_handle open_to_write(const std::string& name) const;
-
-    std::string path_;
+    output_file file_;
 };
+
+/// "path: what", of a file.
+std::runtime_error file_error(const std::string& path, const std::string& what);
 
 } // namespace glint

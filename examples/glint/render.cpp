@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "frame_file.hpp"
 #include "scene_file.hpp"
 
 namespace glint {
@@ -34,6 +35,26 @@ vector parse_vector(const std::string& text) {
         static_cast<std::size_t>(used) != text.size())
         throw std::invalid_argument("--occluder " + text + " is not x,y,z");
     return v;
+}
+
+/// "x,y,w,h" within the picture, or all of it.
+pixel_rectangle parse_tile(const std::string& text, std::size_t width, std::size_t height) {
+    if (text.empty()) return {0, 0, width, height};
+    std::array<std::size_t, 4> number{};
+    const char *at = text.data(), *const end = at + text.size();
+    bool good = true;
+    for (std::size_t i = 0; i < number.size() && good; ++i) {
+        const auto [rest, error] = std::from_chars(at, end, number[i]);
+        const bool last = i + 1 == number.size();
+        good = error == std::errc() && (last ? rest == end : rest != end && *rest == ',');
+        at = rest + (last ? 0 : 1);
+    }
+    if (!good) throw std::invalid_argument("--tile " + text + " is not x,y,width,height");
+    const auto [left, top, w, h] = number;
+    if (w < 1 || h < 1 || left >= width || top >= height || w > width - left || h > height - top)
+        throw std::invalid_argument("--tile " + text + " is not within " + std::to_string(width) + "x" +
+                                    std::to_string(height));
+    return {left, top, w, h};
 }
 
 /// Of the rainbow, luminance 1: turn in [0, 1).
@@ -110,19 +131,24 @@ void render(const render_options& options) {
     const stopwatch watch;
     const scene_description description = describe(options);
     check(description);
-    const png_file output(options.output);
+    const frame_file output(options.output);
+    if (!options.tile.empty() && !output.takes_tiles())
+        throw std::invalid_argument("--tile needs an .exr output: the exposure of a PNG is that of the whole picture, "
+                                    "which glint merge makes");
+    const pixel_rectangle tile = parse_tile(options.tile, description.width, description.height);
     const shader shade(description);
     const double prepared = watch.seconds();
 
-    const frame seen =
+    const stopwatch shading;
+    const frame rendered =
         render_frame(scene(description.camera, description.surfaces, description.width, description.height), shade,
-                     description.seed);
-    srgb_picture picture(description.width, description.height, 0);
-    tone_map(seen.glint, exposure_of(seen), picture, 0, 0);
-    output.save(picture);
+                     description.seed, tile);
+    const double shading_seconds = shading.seconds();
+    const frame_statistics seen = statistics_of(rendered);
+    output.save(rendered, seen, options.origin);
 
     const auto pixels = static_cast<double>(std::max<std::size_t>(seen.surface_pixels, 1));
-    const double ns_per_pixel = seen.seconds * 1e9 / pixels;
+    const double ns_per_pixel = shading_seconds * 1e9 / pixels;
     const auto& light = description.lights.front();
     const auto& counting = description.counting;
     if (options.json) {

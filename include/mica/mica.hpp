@@ -1,6 +1,9 @@
 // mica/mica.hpp: everything (but reference/, which is for judging it).
 #pragma once
 
+/// Binomial and multinomial counts, grids and shading: a room for each in the folders of include/mica.
+namespace mica {}
+
 #include "config.hpp"
 
 #include "numeric/angle.hpp"
@@ -41,6 +44,7 @@
 #include "grid/simplex.hpp"
 #include "grid/tetrahedron.hpp"
 
+#include "shade/contour_area.hpp"
 #include "shade/effects.hpp"
 #include "shade/environment.hpp"
 #include "shade/environment_classes.hpp"

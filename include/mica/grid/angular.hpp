@@ -10,14 +10,15 @@ namespace mica {
 /// angular size of one facet's flash.
 template <real_number Real>
 struct half_vector_point {
-    Real x, y;
+    Real x; ///< along the tangent
+    Real y; ///< along the bitangent
 };
 
 /// A cell of the angular grid around a half vector.
 template <real_number Real>
 struct angular_vertex {
-    index_of<Real> seed;
-    Real weight; ///< bilinear, >= 0; the four sum to 1
+    index_of<Real> seed; ///< equal for every pixel that sees the cell
+    Real weight;         ///< bilinear, >= 0; the four sum to 1
 };
 
 /// Finds the four cells around a half vector in the angular grid of the surface vertex with this seed, which is shifted

@@ -51,8 +51,10 @@ MICA_HOST_DEVICE constexpr normal_pair<Real> blended_pair(const Elements& elemen
 template <class Vertices>
 class blended_uniforms {
   public:
+    /// The number type of the uniforms.
     using number = typename std::remove_cvref_t<Vertices>::number;
 
+    /// Stream `index` of these vertices.
     MICA_HOST_DEVICE explicit constexpr blended_uniforms(const std::remove_cvref_t<Vertices>& vertices,
                                                          std::uint32_t index = 0)
         : blended_uniforms(vertices, hash(index), 0) {}
@@ -117,6 +119,7 @@ class blended_uniforms {
     number second_{};
 };
 
+/// Refers to the vertices that it is given.
 template <class Vertices>
 blended_uniforms(const Vertices&, std::uint32_t = 0) -> blended_uniforms<const Vertices&>;
 

@@ -25,16 +25,19 @@ inline constexpr std::uint32_t largest_light = 0xfffffeffU;
 
 /// One evaluation, with the blended randomness of the vertices.
 struct blended_variates {
+    /// draw(trials, xi) with the blended uniforms of light number `light`.
     template <class Vertices, class Draw>
     MICA_HOST_DEVICE constexpr auto operator()(const Vertices& vertices, std::uint32_t light, const Draw& draw) const {
         return draw(vertices.trials, blended_uniforms(vertices, light));
     }
+    /// How often a law is evaluated for one count.
     template <class Vertices>
     static constexpr std::size_t evaluations = 1;
 };
 
 /// One evaluation per seed, interpolated.
 struct interpolated_counts {
+    /// The weighted sum of draw(trials, xi) of all seeds, for light number `light`.
     template <class Vertices, class Draw>
     MICA_HOST_DEVICE constexpr auto operator()(const Vertices& vertices, std::uint32_t light, const Draw& draw) const {
         using Real = typename Vertices::number;
@@ -53,6 +56,7 @@ struct interpolated_counts {
             }
         return sum;
     }
+    /// How often a law is evaluated for one count.
     template <class Vertices>
     static constexpr std::size_t evaluations = Vertices::seeds;
 };
@@ -62,6 +66,7 @@ struct interpolated_counts {
 struct softened_variates {
     float softness = 0.1F; ///< in [0, 1), the standard deviation of what is averaged over; 0 is blended_variates
 
+    /// draw(trials, xi) with xi the variates and the softness.
     template <class Vertices, class Draw>
     MICA_HOST_DEVICE constexpr auto operator()(const Vertices& vertices, std::uint32_t light, const Draw& draw) const {
         using Real = typename Vertices::number;
@@ -69,6 +74,7 @@ struct softened_variates {
         return draw(vertices.trials, known_part<Real, blended_uniforms<const Vertices&>>{
                                          blended_uniforms(vertices, light), Real(softness)});
     }
+    /// How often a law is evaluated for one count.
     template <class Vertices>
     static constexpr std::size_t evaluations = 1;
 
@@ -104,8 +110,9 @@ MICA_HOST_DEVICE constexpr Real lognormal(Real z, Real s) {
 /// the lights of a pixel apart, whose counts are independent. Where the grids do not resolve the pixel the count is its mean.
 template <class Law, class Interpolation = blended_variates>
 struct distributed_binomial {
-    [[no_unique_address]] Interpolation interpolation{};
+    [[no_unique_address]] Interpolation interpolation{}; ///< the interpolation, with its parameters
 
+    /// The count of one pixel.
     template <real_number Real, std::size_t HalfVectors, std::size_t Grids>
         requires(binomial_law<Law, Real>)
     MICA_HOST_DEVICE constexpr Real operator()(const grid_vertices<Real, HalfVectors, Grids>& vertices,
@@ -121,8 +128,9 @@ struct distributed_binomial {
 /// The counts of K categories in a pixel, with means N p_k. Probabilities as for multinomial.
 template <std::size_t K, class Law, class Interpolation = blended_variates>
 struct distributed_multinomial {
-    [[no_unique_address]] Interpolation interpolation{};
+    [[no_unique_address]] Interpolation interpolation{}; ///< the interpolation, with its parameters
 
+    /// The counts of one pixel.
     template <real_number Real, std::size_t HalfVectors, std::size_t Grids>
         requires(binomial_law<Law, Real>)
     MICA_HOST_DEVICE constexpr std::array<Real, K> operator()(const grid_vertices<Real, HalfVectors, Grids>& vertices,

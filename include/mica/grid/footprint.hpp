@@ -16,8 +16,8 @@ namespace mica {
 /// Derivatives of the texture coordinates by the pixel coordinates, in uv per pixel.
 template <real_number Real>
 struct uv_derivatives {
-    Real du_dx, dv_dx;
-    Real du_dy, dv_dy;
+    Real du_dx, dv_dx; ///< by the next pixel of the row
+    Real du_dy, dv_dy; ///< by the next row
 };
 
 /// A pixel's ellipse in texture space.

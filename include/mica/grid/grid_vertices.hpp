@@ -18,30 +18,31 @@ namespace mica {
 /// One vertex of a grid, and its part in the pixel. HalfVectors is the number of its cells of half vectors, 0 or 4.
 template <real_number Real, std::size_t HalfVectors = 0>
 struct grid_vertex {
-    index_of<Real> seed;
-    Real trials;         ///< the facets of its grid in the pixel
-    Real weight;         ///< of its count in its grid; the three sum to 1
-    Real variate_weight; ///< of its blended variates in its grid
-    std::array<angular_vertex<Real>, HalfVectors> cells;
+    index_of<Real> seed;                                 ///< equal for every pixel that it has a part in
+    Real trials;                                         ///< the facets of its grid in the pixel
+    Real weight;                                         ///< of its count in its grid; the three sum to 1
+    Real variate_weight;                                 ///< of its blended variates in its grid
+    std::array<angular_vertex<Real>, HalfVectors> cells; ///< of half vectors
 };
 
 /// One of the grids of a pixel. A normal variate of every vertex (or of every cell of half vectors, blended with the
 /// cells' weights), weighted with variate_weight of its vertex and of its grid, is a standard normal variate of the pixel.
 template <real_number Real, std::size_t HalfVectors = 0>
 struct pixel_grid {
-    Real variate_weight;
-    std::array<grid_vertex<Real, HalfVectors>, 3> vertices;
+    Real variate_weight;                                    ///< of its blended variates among the grids
+    std::array<grid_vertex<Real, HalfVectors>, 3> vertices; ///< the triangle around the pixel
 };
 
 /// The vertices of a pixel. `trials` are kept as they come; what counts takes them as a law does (binomial_law.hpp).
 template <real_number Real, std::size_t HalfVectors = 0, std::size_t Grids = 4>
 struct grid_vertices {
-    using number = Real;
+    using number = Real; ///< the number type
+    /// All vertices, or all cells of half vectors.
     static constexpr std::size_t seeds = Grids * 3 * (HalfVectors == 0 ? 1 : HalfVectors);
 
-    Real trials;            ///< the facets in the pixel
-    mask_of<Real> resolved; ///< whether the pixel lies in the domain of the grids
-    std::array<pixel_grid<Real, HalfVectors>, Grids> grids;
+    Real trials;                                            ///< the facets in the pixel
+    mask_of<Real> resolved;                                 ///< whether the pixel lies in the domain of the grids
+    std::array<pixel_grid<Real, HalfVectors>, Grids> grids; ///< that share the pixel
 };
 
 /// The vertices of the pixel in lane i.

@@ -12,7 +12,7 @@ namespace mica {
 /// A point in texture space, or in the coordinates of a grid.
 template <real_number Real>
 struct uv_point {
-    Real u, v;
+    Real u, v; ///< the coordinates
 };
 
 /// uv in the coordinates of a grid, where its cells are unit squares: turned so that the long side becomes +v, divided
@@ -92,14 +92,17 @@ template <hash_index Index>
 MICA_HOST_DEVICE constexpr Index row_hash(Index grid, std::type_identity_t<Index> i) {
     return mix(grid ^ i);
 }
+/// The hash of a column.
 template <hash_index Index>
 MICA_HOST_DEVICE constexpr Index column_hash(Index grid, std::type_identity_t<Index> j) {
     return mix(Index(grid * Index(golden_increment)) ^ j);
 }
+/// The seed of the cell in row i and column j.
 template <hash_index Index>
 MICA_HOST_DEVICE constexpr Index cell_seed(Index grid, std::type_identity_t<Index> i, std::type_identity_t<Index> j) {
     return row_hash(grid, i) ^ column_hash(grid, j);
 }
+/// The same for rows and columns with a sign.
 MICA_HOST_DEVICE constexpr std::uint32_t cell_seed(std::uint32_t grid, std::int32_t i, std::int32_t j) {
     return cell_seed<std::uint32_t>(grid, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j));
 }

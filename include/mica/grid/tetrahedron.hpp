@@ -44,7 +44,7 @@ MICA_HOST_DEVICE constexpr int orientations(int log2_ratio) { return log2_ratio 
 
 /// Levels stop here: cells 2^-40 .. 2^40 uv wide. Nothing smaller can be told apart in float texture coordinates.
 inline constexpr int smallest_level = -40;
-inline constexpr int largest_level = 40;
+inline constexpr int largest_level = 40; ///< see smallest_level
 
 namespace detail {
 

@@ -118,6 +118,7 @@ void sample(const Law& law, std::span<const float> trials, std::span<const float
             std::span<float> successes, std::uint32_t first = 0) {
     detail::sample<detail::batch_number<float, Lanes>>(law, trials, probabilities, seed, successes, first);
 }
+/// The same in double.
 template <int Lanes = detail::batch_lanes<double>, binomial_law<detail::batch_number<double, Lanes>> Law>
 void sample(const Law& law, std::span<const double> trials, std::span<const double> probabilities, std::uint32_t seed,
             std::span<double> successes, std::uint32_t first = 0) {
@@ -130,6 +131,7 @@ void sample(const Law& law, float trials, float probability, std::uint32_t seed,
             std::uint32_t first = 0) {
     detail::sample<detail::batch_number<float, Lanes>>(law, trials, probability, seed, successes, first);
 }
+/// The same in double.
 template <int Lanes = detail::batch_lanes<double>, binomial_law<detail::batch_number<double, Lanes>> Law>
 void sample(const Law& law, double trials, double probability, std::uint32_t seed, std::span<double> successes,
             std::uint32_t first = 0) {
@@ -143,6 +145,7 @@ void sample(const multinomial<K, Law>& law, std::span<const float> trials,
             const std::array<std::span<float>, K>& counts, std::uint32_t first = 0) {
     detail::sample<detail::batch_number<float, Lanes>>(law, trials, probabilities, seed, counts, first);
 }
+/// The same in double.
 template <int Lanes = detail::batch_lanes<double>, std::size_t K, binomial_law<detail::batch_number<double, Lanes>> Law>
 void sample(const multinomial<K, Law>& law, std::span<const double> trials,
             const std::array<std::span<const double>, K>& probabilities, std::uint32_t seed,

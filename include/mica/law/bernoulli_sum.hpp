@@ -19,9 +19,11 @@
 
 namespace mica {
 
+/// Bernoulli trials while they are few, the floored Gaussian beyond.
 struct bernoulli_sum_binomial {
-    static constexpr bool integer_counts = true;
+    static constexpr bool integer_counts = true; ///< successes and failures are integers
 
+    /// The counts; arguments as in binomial_law.hpp. Draws 18 uniforms.
     template <real_number Real, class Uniform>
     MICA_HOST_DEVICE constexpr counts<Real> operator()(Real trials, Real probability, Uniform&& xi) const {
         const auto [real_trials, p] = detail::in_domain(trials, probability);

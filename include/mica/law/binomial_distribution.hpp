@@ -25,23 +25,29 @@
 
 namespace mica {
 
+/// The number of successes in t trials of probability p, as the standard's std::binomial_distribution, by any law of integer counts.
 template <std::integral Int = int, integer_binomial_law<double> Law = exact_binomial>
 class binomial_distribution {
   public:
+    /// What a call returns.
     using result_type = Int;
 
+    /// t and p.
     class param_type {
       public:
+        /// The distribution that these are the parameters of.
         using distribution_type = binomial_distribution;
 
+        /// t in [0, 2^53], p in [0, 1]; fails otherwise.
         explicit param_type(Int t = 1, double p = 0.5) : t_(t), p_(p) {
             if (!detail::countable(t)) MICA_FAIL("t", t, "in [0, 2^53]");
             if (!detail::is_probability(p)) MICA_FAIL("p", p, "in [0,1]");
         }
 
-        Int t() const { return t_; }
-        double p() const { return p_; }
+        Int t() const { return t_; }    ///< trials
+        double p() const { return p_; } ///< probability of a success
 
+        /// Whether t and p are equal.
         friend bool operator==(const param_type&, const param_type&) = default;
 
       private:
@@ -49,10 +55,14 @@ class binomial_distribution {
         double p_;
     };
 
+    /// One trial of probability 1/2.
     binomial_distribution() : binomial_distribution(1) {}
+    /// t in [0, 2^53], p in [0, 1]; fails otherwise.
     explicit binomial_distribution(Int t, double p = 0.5) : param_(t, p) {}
+    /// The distribution with these parameters.
     explicit binomial_distribution(const param_type& param) : param_(param) {}
 
+    /// Does nothing: nothing is kept between calls.
     void reset() {}
 
     /// The number of successes, in [0, t].
@@ -68,13 +78,15 @@ class binomial_distribution {
         return static_cast<Int>(Law{}(static_cast<double>(param.t()), param.p(), xi).successes);
     }
 
-    Int t() const { return param_.t(); }
-    double p() const { return param_.p(); }
-    param_type param() const { return param_; }
+    Int t() const { return param_.t(); }        ///< trials
+    double p() const { return param_.p(); }     ///< probability of a success
+    param_type param() const { return param_; } ///< t and p
+    /// Takes other parameters.
     void param(const param_type& param) { param_ = param; }
-    result_type(min)() const { return 0; }
-    result_type(max)() const { return param_.t(); }
+    result_type(min)() const { return 0; }          ///< 0
+    result_type(max)() const { return param_.t(); } ///< t
 
+    /// Whether the parameters are equal, and with them what equal generators give.
     friend bool operator==(const binomial_distribution&, const binomial_distribution&) = default;
 
     /// "t p", p with all its digits.
@@ -85,6 +97,7 @@ class binomial_distribution {
         return out << +distribution.t() << ' ' << distribution.p();
     }
 
+    /// Reads what << wrote; sets failbit, and changes nothing, where that is not what is there.
     template <class Character, class Traits>
     friend std::basic_istream<Character, Traits>& operator>>(std::basic_istream<Character, Traits>& in,
                                                              binomial_distribution& distribution) {

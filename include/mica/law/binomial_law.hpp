@@ -20,8 +20,8 @@ namespace mica {
 /// what holds.
 template <real_number Real>
 struct counts {
-    Real successes;
-    Real failures;
+    Real successes; ///< >= 0
+    Real failures;  ///< >= 0
 };
 
 namespace detail {

@@ -125,8 +125,9 @@ double exact_binomial_successes(double n, double p, Uniform& xi) {
 
 /// Exact binomial counts.
 struct exact_binomial {
-    static constexpr bool integer_counts = true;
+    static constexpr bool integer_counts = true; ///< successes and failures are integers
 
+    /// The counts; arguments as in binomial_law.hpp. Draws one uniform of a source that can fork, 1 to 3 on average of any other.
     template <real_number Real, class Uniform>
     counts<Real> operator()(Real trials, Real probability, Uniform&& xi) const {
         auto&& stream = detail::forked(xi);

@@ -20,10 +20,12 @@
 
 namespace mica {
 
+/// The floored gated Gaussian with a gate of your choice.
 template <binomial_gate Gate>
 struct basic_floored_gated_binomial {
-    static constexpr bool integer_counts = true;
+    static constexpr bool integer_counts = true; ///< successes and failures are integers
 
+    /// The counts; arguments as in binomial_law.hpp. Draws two uniforms.
     template <real_number Real, class Uniform>
     MICA_HOST_DEVICE constexpr counts<Real> operator()(Real trials, Real probability, Uniform&& xi) const {
         const auto [n, p] = detail::in_domain(trials, probability);

@@ -14,9 +14,11 @@
 
 namespace mica {
 
+/// The Gaussian approximation, clamped to [0, N].
 struct gaussian_binomial {
-    static constexpr bool integer_counts = false;
+    static constexpr bool integer_counts = false; ///< successes and failures are real numbers
 
+    /// The counts; arguments as in binomial_law.hpp. Draws one uniform.
     template <real_number Real, class Uniform>
     MICA_HOST_DEVICE constexpr counts<Real> operator()(Real trials, Real probability, Uniform&& xi) const {
         const auto [n, p] = detail::in_domain(trials, probability);

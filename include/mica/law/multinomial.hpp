@@ -94,10 +94,12 @@ inline constexpr std::uint32_t root_node = 2U;
 
 } // namespace detail
 
+/// K known when the program is compiled.
 template <std::size_t K, class Law>
 struct multinomial {
     static_assert(K >= 1, "a multinomial has at least one category");
 
+    /// The count of every category.
     template <real_number Real, class Uniform>
         requires(binomial_law<Law, Real>)
     MICA_HOST_DEVICE constexpr std::array<Real, K>

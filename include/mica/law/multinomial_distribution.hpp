@@ -46,18 +46,25 @@ inline bool are_probabilities(std::span<const double> values) {
 
 } // namespace detail
 
+/// The counts of the categories among t trials, as a distribution of the standard library would be, by any law of integer counts.
 template <std::integral Int = int, integer_binomial_law<double> Law = exact_binomial>
 class multinomial_distribution {
   public:
+    /// What a call returns: one count for each category.
     using result_type = std::vector<Int>;
 
+    /// t and the probabilities.
     class param_type {
       public:
+        /// The distribution that these are the parameters of.
         using distribution_type = multinomial_distribution;
 
+        /// One trial, one category that has it.
         param_type() : param_type(1, {1.}) {}
+        /// t in [0, 2^53], probabilities in [0, 1] with a sum of at most 1; fails otherwise.
         param_type(Int t, std::initializer_list<double> probabilities)
             : param_type(t, std::span<const double>(probabilities.begin(), probabilities.size())) {}
+        /// t in [0, 2^53], probabilities in [0, 1] with a sum of at most 1; fails otherwise.
         param_type(Int t, std::span<const double> probabilities)
             : t_(t), probabilities_(probabilities.begin(), probabilities.end()) {
             if (!detail::countable(t)) MICA_FAIL("t", t, "in [0, 2^53]");
@@ -68,9 +75,11 @@ class multinomial_distribution {
                 MICA_FAIL("the sum of the probabilities", detail::sum_of(probabilities), "at most 1");
         }
 
-        Int t() const { return t_; }
+        Int t() const { return t_; } ///< trials
+        /// One for each category.
         const std::vector<double>& probabilities() const { return probabilities_; }
 
+        /// Whether t and the probabilities are equal.
         friend bool operator==(const param_type&, const param_type&) = default;
 
       private:
@@ -78,11 +87,16 @@ class multinomial_distribution {
         std::vector<double> probabilities_;
     };
 
+    /// One trial, one category that has it.
     multinomial_distribution() = default;
+    /// Parameters as for param_type.
     multinomial_distribution(Int t, std::initializer_list<double> probabilities) : param_(t, probabilities) {}
+    /// Parameters as for param_type.
     multinomial_distribution(Int t, std::span<const double> probabilities) : param_(t, probabilities) {}
+    /// The distribution with these parameters.
     explicit multinomial_distribution(const param_type& param) : param_(param) {}
 
+    /// Does nothing: nothing is kept between calls.
     void reset() {}
 
     /// The count of each category.
@@ -105,13 +119,18 @@ class multinomial_distribution {
         return result;
     }
 
-    Int t() const { return param_.t(); }
+    Int t() const { return param_.t(); } ///< trials
+    /// One for each category.
     const std::vector<double>& probabilities() const { return param_.probabilities(); }
-    param_type param() const { return param_; }
+    param_type param() const { return param_; } ///< t and the probabilities
+    /// Takes other parameters.
     void param(const param_type& param) { param_ = param; }
+    /// Zeros.
     result_type(min)() const { return result_type(param_.probabilities().size(), 0); }
+    /// t for each.
     result_type(max)() const { return result_type(param_.probabilities().size(), param_.t()); }
 
+    /// Whether the parameters are equal, and with them what equal generators give.
     friend bool operator==(const multinomial_distribution&, const multinomial_distribution&) = default;
 
     /// "t K p_1 ... p_K", probabilities with all their digits.
@@ -124,6 +143,7 @@ class multinomial_distribution {
         return out;
     }
 
+    /// Reads what << wrote; sets failbit, and changes nothing, where that is not what is there.
     template <class Character, class Traits>
     friend std::basic_istream<Character, Traits>& operator>>(std::basic_istream<Character, Traits>& in,
                                                              multinomial_distribution& distribution) {

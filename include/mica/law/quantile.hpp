@@ -77,8 +77,9 @@ MICA_HOST_DEVICE constexpr Real cornish_fisher_quotient(Real trials, Real p, Rea
 template <int Gates>
 struct quantile_binomial {
     static_assert(Gates >= 1 && Gates <= 16, "a quantile law has 1 to 16 gates");
-    static constexpr bool integer_counts = true;
+    static constexpr bool integer_counts = true; ///< successes and failures are integers
 
+    /// The counts; arguments as in binomial_law.hpp. Draws two uniforms.
     template <real_number Real, class Uniform>
     MICA_HOST_DEVICE constexpr counts<Real> operator()(Real trials, Real probability, Uniform&& xi) const {
         const auto [real_trials, p] = detail::in_domain(trials, probability);

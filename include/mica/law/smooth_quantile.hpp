@@ -169,8 +169,9 @@ MICA_HOST_DEVICE constexpr pair_of<Real> lone_facet(Real n, const rarer_side<Rea
 template <int Gates>
 struct smooth_quantile_binomial {
     static_assert(Gates >= 1 && Gates <= 16, "a quantile law has 1 to 16 gates");
-    static constexpr bool integer_counts = false;
+    static constexpr bool integer_counts = false; ///< successes and failures are real numbers
 
+    /// The counts; arguments as in binomial_law.hpp. Draws one uniform.
     template <real_number Real, class Uniform>
     MICA_HOST_DEVICE constexpr counts<Real> operator()(Real trials, Real probability, Uniform&& xi) const {
         using Scalar = scalar_of<Real>;

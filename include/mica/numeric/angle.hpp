@@ -10,9 +10,10 @@
 
 namespace mica {
 
+/// Sine and cosine of one angle.
 template <real_number Real>
 struct sine_cosine {
-    Real sine, cosine;
+    Real sine, cosine; ///< the two
 };
 
 namespace detail {

@@ -6,16 +6,16 @@
 //
 // Largest errors, enforced by tests/numeric_test.cpp (float: every 257th value of the domain and all special ones):
 //
-//   function        domain                              float     double
-//   log             normal, > 0                         2 ulp     2 ulp   (absolute 5e-8, 2e-16 where |log x| < 1/2)
-//   log2            normal, > 0                         2 ulp     2 ulp   (absolute 1e-7, 3e-16 where |log2 x| < 1/2)
-//   log1p_neg       p in [0, 1)                         2 ulp     2 ulp
-//   log_complement  p in [0, 1/2]                       2 ulp     2 ulp
-//   exp             [-87, 88.37]   ([-708, 709.43])     2 ulp     2 ulp
-//   exp2            [-126, 127]    ([-1022, 1023])      2 ulp     2 ulp
-//   expm1           [-inf, 88.37]  ([-inf, 709.43])     4 ulp     4 ulp   (next to ln2 / 2)
-//   inverse_sqrt    normal, > 0                         4 ulp     4 ulp
-//   sqrt            0 and normal                        1 ulp     1 ulp
+//     function        domain                              float     double
+//     log             normal, > 0                         2 ulp     2 ulp   (absolute 5e-8, 2e-16 where |log x| < 1/2)
+//     log2            normal, > 0                         2 ulp     2 ulp   (absolute 1e-7, 3e-16 where |log2 x| < 1/2)
+//     log1p_neg       p in [0, 1)                         2 ulp     2 ulp
+//     log_complement  p in [0, 1/2]                       2 ulp     2 ulp
+//     exp             [-87, 88.37]   ([-708, 709.43])     2 ulp     2 ulp
+//     exp2            [-126, 127]    ([-1022, 1023])      2 ulp     2 ulp
+//     expm1           [-inf, 88.37]  ([-inf, 709.43])     4 ulp     4 ulp   (next to ln2 / 2)
+//     inverse_sqrt    normal, > 0                         4 ulp     4 ulp
+//     sqrt            0 and normal                        1 ulp     1 ulp
 #pragma once
 
 #include <cstddef>

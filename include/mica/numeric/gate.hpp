@@ -51,11 +51,13 @@ struct log1p_gate {
 /// The published remedy for binary32. Largest absolute error of none in float 8.5e-5, near p = 2e-12, N = 5e11: it
 /// evaluates another number than (1-p)^N (tests/numeric_test.cpp). any has the relative error 2e-4.
 struct scaled_gate {
+    /// (1-p)^N
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real none(Real trials, Real probability) {
         return select(detail::certain(trials, probability), Real(0), mica::exp(exponent(trials, probability)));
     }
 
+    /// 1 - (1-p)^N
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real any(Real trials, Real probability) {
         return select(detail::certain(trials, probability), Real(1), -mica::expm1(exponent(trials, probability)));
@@ -76,12 +78,14 @@ struct scaled_gate {
 /// In float, 1 - p is 1 for p < 3e-8, so none is 1 where the truth is 0: absolute error 1. any is 1 - none and has no
 /// digits where N p is small.
 struct naive_gate {
+    /// (1-p)^N
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real none(Real trials, Real probability) {
         const Real power = mica::exp(trials * mica::log(Real(1) - probability));
         return select(detail::certain(trials, probability), Real(0), power);
     }
 
+    /// 1 - (1-p)^N
     template <real_number Real>
     MICA_HOST_DEVICE static constexpr Real any(Real trials, Real probability) {
         return Real(1) - none(trials, probability);

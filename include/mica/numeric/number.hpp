@@ -39,16 +39,22 @@ struct number_traits<double> {
     static constexpr int lanes = 1;
 };
 
+/// The plain number: float or double.
 template <class Number>
 using scalar_of = typename number_traits<Number>::scalar;
+/// A signed integer of the same size and lane count.
 template <class Number>
 using integer_of = typename number_traits<Number>::integer;
+/// An unsigned integer of the same size and lane count.
 template <class Number>
 using bits_of = typename number_traits<Number>::bits;
+/// A 32-bit unsigned integer of the same lane count.
 template <class Number>
 using index_of = typename number_traits<Number>::index;
+/// What a comparison gives: bool, or one truth value for each lane.
 template <class Number>
 using mask_of = typename number_traits<Number>::mask;
+/// How many plain numbers it holds.
 template <class Number>
 inline constexpr int lanes_of = number_traits<Number>::lanes;
 
@@ -61,6 +67,7 @@ concept real_number = std::floating_point<scalar_of<Number>>;
 template <class Number>
 concept scalar_number = real_number<Number> && std::same_as<Number, scalar_of<Number>>;
 
+/// A plain number or integer.
 template <class Scalar>
 concept arithmetic = std::is_arithmetic_v<Scalar>;
 
@@ -70,7 +77,9 @@ MICA_HOST_DEVICE constexpr Number select(bool mask, Number if_true, Number if_fa
     return mask ? if_true : if_false;
 }
 
+/// Whether the mask holds in any lane.
 MICA_HOST_DEVICE constexpr bool any(bool mask) { return mask; }
+/// Whether the mask holds in every lane.
 MICA_HOST_DEVICE constexpr bool all(bool mask) { return mask; }
 
 /// Value by value, truncating towards zero. A real must lie within the range of the integer.

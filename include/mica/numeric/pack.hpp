@@ -55,6 +55,7 @@ template <class T, int W>
 struct vector_of {
     struct type {
         T lane[W];
+        /// Lane i.
         MICA_HOST_DEVICE constexpr T operator[](int i) const { return lane[i]; }
         MICA_HOST_DEVICE constexpr T& operator[](int i) { return lane[i]; }
     };
@@ -66,23 +67,33 @@ struct vector_of {
 /// What the comparison of two packs gives: in each lane all bits set (true) or none. `Bytes` is the size of a lane.
 template <std::size_t Bytes, int W>
 struct pack_mask {
+    /// The integer that a lane is.
     using element = typename detail::signed_of_size<Bytes>::type;
+    /// What holds the lanes.
     using vector = typename detail::vector_of<element, W>::type;
-    vector v;
+    vector v; ///< the lanes
 
+    /// Lanes of any value.
     pack_mask() = default;
+    /// The mask of these lanes.
     MICA_HOST_DEVICE constexpr pack_mask(const vector& lanes) : v(lanes) {}
+    /// The same lanes.
     MICA_HOST_DEVICE constexpr pack_mask(const pack_mask& other) : v(other.v) {}
+    /// Takes the lanes of another.
     MICA_HOST_DEVICE constexpr pack_mask& operator=(const pack_mask& other) {
         v = other.v;
         return *this;
     }
 
+    /// Lane i.
     MICA_HOST_DEVICE bool operator[](int i) const { return v[i] != 0; }
 
 #if MICA_VECTOR_EXTENSIONS
+    /// Lane by lane.
     friend pack_mask operator&&(pack_mask a, pack_mask b) { return {a.v & b.v}; }
+    /// Lane by lane.
     friend pack_mask operator||(pack_mask a, pack_mask b) { return {a.v | b.v}; }
+    /// Lane by lane.
     friend pack_mask operator!(pack_mask a) { return {~a.v}; }
 #else
     template <class Operation>
@@ -108,17 +119,24 @@ struct pack_mask {
 template <class T, int W>
 struct pack {
     static_assert(W >= 1 && (W & (W - 1)) == 0, "the lanes of a pack are a power of two");
+    /// One lane.
     using value_type = T;
+    /// What a comparison gives.
     using mask = pack_mask<sizeof(T), W>;
+    /// What holds the lanes: a vector of the compiler, or an array.
     using vector = typename detail::vector_of<T, W>::type;
-    vector v;
+    vector v; ///< the lanes
 
+    /// Lanes of any value.
     pack() = default;
+    /// The same lanes.
     MICA_HOST_DEVICE constexpr pack(const pack& other) : v(other.v) {}
+    /// Takes the lanes of another.
     MICA_HOST_DEVICE constexpr pack& operator=(const pack& other) {
         v = other.v;
         return *this;
     }
+    /// The pack of these lanes.
     MICA_HOST_DEVICE explicit constexpr pack(const vector& lanes) : v(lanes) {}
 
     /// The same value in every lane.
@@ -131,7 +149,9 @@ struct pack {
 #endif
     }
 
+    /// Lane i.
     MICA_HOST_DEVICE T operator[](int i) const { return v[i]; }
+    /// Sets lane i.
     MICA_HOST_DEVICE void set(int i, T value) { v[i] = value; }
 
     /// W consecutive elements in memory.
@@ -140,6 +160,7 @@ struct pack {
         std::memcpy(&result.v, from, sizeof(vector)); // lane by lane it would go through memory once more
         return result;
     }
+    /// To W consecutive elements in memory.
     MICA_HOST_DEVICE void store(T* to) const { std::memcpy(to, &v, sizeof(vector)); }
 
     /// start, start + 1, ..., start + W - 1
@@ -161,6 +182,7 @@ struct pack {
     friend mask operator op(pack a, pack b) { return {a.v op b.v}; }
 #define MICA_PACK_SHIFT(op)                                                                                            \
     friend pack operator op(pack a, int places) { return pack(a.v op static_cast<T>(places)); }
+    /// Lane by lane.
     friend pack operator-(pack a) { return pack(-a.v); }
 #else
     template <class Operation>
@@ -181,6 +203,7 @@ struct pack {
     MICA_HOST_DEVICE friend pack operator op(pack a, int places) {                                                     \
         return each([&](int i) { return a[i] op places; });                                                            \
     }
+    /// Lane by lane.
     MICA_HOST_DEVICE friend pack operator-(pack a) {
         return each([&](int i) { return -a[i]; });
     }
@@ -214,6 +237,7 @@ struct number_traits<pack<T, W>> {
     static constexpr int lanes = W;
 };
 
+/// if_true where the mask holds, if_false elsewhere. Both are evaluated.
 template <class T, int W>
 MICA_HOST_DEVICE inline pack<T, W> select(pack_mask<sizeof(T), W> mask, pack<T, W> if_true,
                                           std::type_identity_t<pack<T, W>> if_false) {
@@ -258,6 +282,7 @@ MICA_PACK_MINMAX(double, 8, MICA_SMALLER_512, MICA_LARGER_512)
 #undef MICA_PACK_MINMAX
 #endif
 
+/// Whether the mask holds in any lane.
 template <std::size_t Bytes, int W>
 MICA_HOST_DEVICE inline bool any(pack_mask<Bytes, W> mask) {
     bool result = false;
@@ -265,11 +290,13 @@ MICA_HOST_DEVICE inline bool any(pack_mask<Bytes, W> mask) {
     return result;
 }
 
+/// Whether the mask holds in every lane.
 template <std::size_t Bytes, int W>
 MICA_HOST_DEVICE inline bool all(pack_mask<Bytes, W> mask) {
     return !any(!mask);
 }
 
+/// Lane by lane, truncating towards zero. A real must lie within the range of the integer.
 template <class To, class T, int W>
     requires(lanes_of<To> == W)
 MICA_HOST_DEVICE inline To convert(pack<T, W> value) {
@@ -280,17 +307,20 @@ MICA_HOST_DEVICE inline To convert(pack<T, W> value) {
 #endif
 }
 
+/// The same bits under another type of the same size.
 template <class To, class T, int W>
     requires(sizeof(To) == sizeof(pack<T, W>))
 MICA_HOST_DEVICE inline To reinterpret(pack<T, W> value) {
     return To(__builtin_bit_cast(typename To::vector, value.v));
 }
 
+/// Lane `i`.
 template <class T, int W>
 MICA_HOST_DEVICE inline T lane(pack<T, W> value, int i) {
     return value[i];
 }
 
+/// Sets lane `i`.
 template <class T, int W>
 MICA_HOST_DEVICE inline void set_lane(pack<T, W>& number, int i, T value) {
     number.set(i, value);

@@ -16,8 +16,10 @@ namespace mica {
 template <scalar_number Real, std::uniform_random_bit_generator Generator>
 class generator_uniforms {
   public:
+    /// Draws from this generator.
     explicit generator_uniforms(Generator& generator) : generator_(generator) {}
 
+    /// The next uniform.
     Real operator()() {
         if constexpr (sizeof(Real) == 4) {
             return uniform_from_bits<Real>(next_32());

@@ -35,6 +35,7 @@ MICA_HOST_DEVICE constexpr Index hash(Index first) {
     return mix(first + Index(golden_increment));
 }
 
+/// The same of two and more.
 template <hash_index Index, class... Indices>
 MICA_HOST_DEVICE constexpr Index hash(Index first, Index second, Indices... more) {
     return hash(Index(hash(first) ^ second), more...);

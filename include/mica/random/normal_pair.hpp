@@ -7,9 +7,10 @@
 
 namespace mica {
 
+/// Two independent standard normal variates.
 template <real_number Real>
 struct normal_pair {
-    Real first, second;
+    Real first, second; ///< the two
 };
 
 namespace detail {

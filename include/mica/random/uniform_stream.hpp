@@ -31,8 +31,10 @@ MICA_HOST_DEVICE constexpr auto lane_of_number(const Number& number, int i) {
 template <real_number Real>
 class uniform_stream {
   public:
+    /// What seeds and indices are: 32 bits, for each lane.
     using index_type = index_of<Real>;
 
+    /// Stream `index` of the seed, at its first draw.
     MICA_HOST_DEVICE explicit constexpr uniform_stream(index_type seed, index_type index = index_type(0U))
         : key_(hash(seed)), index_(index) {}
 

@@ -14,14 +14,16 @@
 
 #include "../config.hpp"
 
+/// Slow truths that the rest is tested against.
 namespace mica::reference {
 
 /// One facet: its place in uv, and the slopes of its normal along u and v.
 struct facet {
-    double u, v;
-    double slope_u, slope_v;
+    double u, v;             ///< its place, in [0, 1)
+    double slope_u, slope_v; ///< each standard normal over all facets
 };
 
+/// How facets lie on the surface.
 enum class facet_positions {
     uniform, ///< independent: the number in a footprint is Poisson distributed (but for the finite whole)
     jittered ///< one in every cell of a square lattice: the number in a footprint hardly varies
@@ -30,16 +32,17 @@ enum class facet_positions {
 /// The ellipse M d with d in a disc of `radius` pixels around a centre. M has the columns duv/dx and duv/dy, in uv per
 /// pixel. A disc of radius 1/sqrt(pi) has the area of a pixel, |det M| in uv.
 struct ellipse {
-    double u, v;
-    double du_dx, dv_dx, du_dy, dv_dy;
-    double radius = 0.56418958354775628695;
+    double u, v;                            ///< the centre
+    double du_dx, dv_dx, du_dy, dv_dy;      ///< the entries of M
+    double radius = 0.56418958354775628695; ///< in pixels; 1/sqrt(pi), a pixel's area
 };
 
 /// Whether a facet's slope lies within `reach` of (slope_u, slope_v).
 struct flash {
-    double slope_u = 0, slope_v = 0;
-    double reach;
+    double slope_u = 0, slope_v = 0; ///< of a facet that flashes with no reach at all
+    double reach;                    ///< > 0
 
+    /// Whether the facet flashes.
     bool operator()(const facet& f) const { return std::hypot(f.slope_u - slope_u, f.slope_v - slope_v) < reach; }
 
     /// The flash towards the mean slope 0 of which a facet has a given probability in [0, 1].
@@ -48,7 +51,7 @@ struct flash {
 
 /// What a footprint holds.
 struct facet_counts {
-    std::size_t facets, flashes;
+    std::size_t facets, flashes; ///< all, and those that flash
 };
 
 /// The facets of the unit square.

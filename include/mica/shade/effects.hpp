@@ -39,12 +39,13 @@ struct smooth_where_dense {
 /// One of the four grids of a pixel, picked at random for every pixel and frame: a quarter of the evaluations of
 /// interpolated_counts, of the same mean, for renderers that accumulate frames.
 struct one_grid {
-    std::uint32_t frame = 0;
+    std::uint32_t frame = 0; ///< number of the frame: another gives other choices
 };
 
 /// The effects of a kernel.
 template <class... Effect>
 struct effects : Effect... {
+    /// Whether Other is one of them.
     template <class Other>
     static constexpr bool has = (std::is_same_v<Other, Effect> || ...);
 };

@@ -17,7 +17,8 @@ namespace mica {
 
 /// A point of an equirectangular map: u in [0,1) from left to right, v in [0,1] from top to bottom.
 struct equirect_point {
-    float u, v;
+    float u; ///< from left to right
+    float v; ///< from top to bottom
 };
 
 /// The point of the map in direction w: +y is the top, -z the middle, +x right of it. w of length 1.
@@ -37,16 +38,19 @@ inline vector3<float> direction_of(equirect_point point) {
 /// A grid of texels over the sphere, row 0 at the top; texel (x, y) is centred at ((x+1/2)/width, (y+1/2)/height).
 template <class Texel>
 struct equirect_image {
-    std::size_t width = 0, height = 0;
+    std::size_t width = 0;     ///< in texels
+    std::size_t height = 0;    ///< in texels
     std::vector<Texel> texels; ///< width * height, row by row
 
+    /// Column x, row y.
     const Texel& at(std::size_t x, std::size_t y) const { return texels[y * width + x]; }
 
-    /// The four texels around a direction and their bilinear weights. Beyond a pole lies the same row, half way round.
+    /// A texel near a direction. Beyond a pole lies the same row, half way round.
     struct tap {
-        std::size_t index;
-        float weight;
+        std::size_t index; ///< in texels
+        float weight;      ///< bilinear, >= 0
     };
+    /// The four texels around direction w, of length 1; their weights sum to 1.
     std::array<tap, 4> taps(vector3<float> w) const {
         const equirect_point point = equirect_of(w);
         const float x = point.u * static_cast<float>(width) - 0.5F, y = point.v * static_cast<float>(height) - 0.5F;
@@ -91,6 +95,7 @@ class environment_map {
             }
     }
 
+    /// The texels.
     const equirect_image<rgb<float>>& image() const { return image_; }
 
     /// Radiance from direction w, bilinear.

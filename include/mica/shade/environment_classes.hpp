@@ -12,6 +12,7 @@
 
 namespace mica {
 
+/// Which class each radiance of an environment belongs to.
 template <std::size_t K>
 class environment_classes {
     static_assert(K >= 2, "an environment needs at least two classes, one of them dim");

@@ -22,8 +22,8 @@ namespace mica {
 /// of the lobe, and the part of the lobe that shows it.
 template <real_number Real, std::size_t K>
 struct environment_lobe {
-    std::array<rgb<Real>, K> radiance;
-    std::array<Real, K> share; ///< sum 1; less where something occludes the environment
+    std::array<rgb<Real>, K> radiance; ///< of each class in the lobe
+    std::array<Real, K> share;         ///< sum 1; less where something occludes the environment
 };
 
 /// The lobe in published levels: all of the colour of the whole, as bright as L_k is beside the others.

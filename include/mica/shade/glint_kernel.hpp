@@ -69,12 +69,12 @@ MICA_HOST_DEVICE constexpr Real relative_variance(const std::array<light_class<R
 /// effects<...>. As an object it holds their parameters; kernels of the same types differ in nothing else.
 template <class Law, class Interpolation = blended_variates, class Effects = effects<>>
 struct glint_kernel {
-    [[no_unique_address]] Interpolation interpolation{};
-    [[no_unique_address]] Effects effect{};
+    [[no_unique_address]] Interpolation interpolation{}; ///< the interpolation, with its parameters
+    [[no_unique_address]] Effects effect{};              ///< the effects, with their parameters
 
-    static constexpr bool counts_nothing = std::is_same_v<Law, no_glints>;
-    static constexpr bool has_half_vectors = Effects::template has<angular_grid>;
-    static constexpr bool has_one_grid = Effects::template has<one_grid>;
+    static constexpr bool counts_nothing = std::is_same_v<Law, no_glints>;        ///< whether it is the smooth surface
+    static constexpr bool has_half_vectors = Effects::template has<angular_grid>; ///< whether it needs half_vector
+    static constexpr bool has_one_grid = Effects::template has<one_grid>; ///< whether it evaluates one grid of four
     static_assert(!has_one_grid || std::is_same_v<Interpolation, interpolated_counts>,
                   "one_grid is for interpolated_counts: blended variates have no other grids to leave out");
 

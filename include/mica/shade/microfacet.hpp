@@ -133,7 +133,8 @@ Real visible_facet_area(Real n_dot_v, Real roughness) {
 /// Smith masking-shadowing and Schlick's Fresnel.
 template <scalar_number Real>
 struct albedo_terms {
-    Real scale, bias;
+    Real scale; ///< what f0 is multiplied by
+    Real bias;  ///< what is added
 
     /// E(f0), band by band.
     rgb<Real> operator()(rgb<Real> f0) const { return scale * f0 + rgb<Real>{bias, bias, bias}; }
@@ -207,6 +208,7 @@ struct bilinear_table {
 /// grazing angles (n.v < 0.05) of very smooth surfaces (roughness < 0.01) (tests/microfacet_test.cpp).
 class microfacet_table {
   public:
+    /// Computes the tables.
     microfacet_table() {
         for (std::size_t row = 0; row < visible_size; ++row) {
             const double alpha = row_roughness(row, visible_size);

@@ -167,15 +167,21 @@ struct beckmann_shape {
 
 } // namespace detail
 
-/// GGX (Walter et al. 2007, Eq. 33; Burley 2012 with two roughnesses).
+/// GGX (Walter et al. 2007, Eq. 33; Burley 2012 with two roughnesses): P(q) = 1 / (pi (1+q)^2).
+///
+/// ggx<Real>{roughness_x, roughness_y}, alpha along tangent and bitangent, in [0, 1]. Of directions in the surface's frame:
+/// density(h), its value density_at_normal() at the normal, relative_density(h) = D(h) / D(n); facet_area() is D_H;
+/// masking_shadowing(wi, wo) and lambda(w) are Smith's.
 template <real_number Real>
 struct ggx : detail::stretched_distribution<detail::ggx_shape, Real> {
+    /// What the lights integrate.
     using shape = detail::ggx_shape;
 };
 
-/// Beckmann (Walter et al. 2007, Eq. 25).
+/// Beckmann (Walter et al. 2007, Eq. 25): P(q) = exp(-q) / pi. Members as for ggx.
 template <real_number Real>
 struct beckmann : detail::stretched_distribution<detail::beckmann_shape, Real> {
+    /// What the lights integrate.
     using shape = detail::beckmann_shape;
 };
 

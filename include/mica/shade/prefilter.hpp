@@ -26,6 +26,7 @@ namespace mica {
 
 /// Runs body(0) .. body(count - 1) one after the other. Anything that may run them side by side can take its place.
 struct serial_loop {
+    /// One after the other.
     template <class Body>
     void operator()(std::size_t count, const Body& body) const {
         for (std::size_t i = 0; i < count; ++i) body(i);
@@ -284,6 +285,7 @@ class prefiltered_environment {
   public:
     /// What the lobe around a direction sees.
     struct sample {
+        /// The radiance of the lobe.
         rgb<float> radiance;
         std::array<float, K> indicator; ///< >= 0, sum 1
     };
@@ -297,6 +299,7 @@ class prefiltered_environment {
         : levels_(levels),
           maps_(map.image().width, map.image().height, values_of(map, levels), roughnesses, loop, quality) {}
 
+    /// The levels that the indicators are of.
     const environment_levels<K>& levels() const { return levels_; }
 
     /// The lobe of a roughness around direction r; between the given roughnesses linear in perceptual roughness,
@@ -330,6 +333,7 @@ class prefiltered_environment {
 
 /// Nothing occludes the environment.
 struct all_visible {
+    /// All of every direction.
     float operator()(vector3<float>) const { return 1; }
 };
 

@@ -10,8 +10,9 @@ namespace mica {
 /// A pixel on a surface, or one in every lane. Directions are of length 1 and point away from the surface.
 template <real_number Real>
 struct shading_point {
-    vector3<Real> normal{}, wo{};
-    uv_point<Real> uv{};
+    vector3<Real> normal{};             ///< of the surface, shading normal and all
+    vector3<Real> wo{};                 ///< towards the eye
+    uv_point<Real> uv{};                ///< texture coordinates
     uv_derivatives<Real> derivatives{}; ///< uv per pixel
     vector3<Real> tangent{};  ///< perpendicular to the normal: the first axis of anisotropy and of half vectors
     vector3<Real> position{}; ///< in the scene; for lights at a finite distance
@@ -25,7 +26,8 @@ struct shading_point {
 /// Radiance towards the eye: with the facets counted, and the smooth limit of infinitely many.
 template <real_number Real>
 struct glint_radiance {
-    rgb<Real> glint, smooth;
+    rgb<Real> glint;  ///< with the facets counted
+    rgb<Real> smooth; ///< of infinitely many
 };
 
 } // namespace mica
