@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # The README's "Using it" as a new user would try it: its program built and run in each of the ways, with the lines that
-# stand there, each in an empty folder.  consumers.sh SOURCE_DIR
+# stand there, each in an empty folder:
+#     consumers.sh SOURCE_DIR CMAKE_GENERATOR
 set -euo pipefail
 source=$1
-unset CXXFLAGS CPPFLAGS LDFLAGS CPATH CPLUS_INCLUDE_PATH
-export CXX=g++ CMAKE_EXPORT_COMPILE_COMMANDS=ON
+unset CXXFLAGS CPPFLAGS LDFLAGS CPATH CPLUS_INCLUDE_PATH CMAKE_BUILD_TYPE
+export CXX=g++ CMAKE_GENERATOR=$2 CMAKE_EXPORT_COMPILE_COMMANDS=ON
 
 HOME=$(mktemp -d) # the README installs below it
 export HOME
@@ -57,9 +58,9 @@ built_by_cmake() { # [OPTION...], with the lines of standard input
     { printf 'cmake_minimum_required(VERSION 3.21)\nproject(glitter LANGUAGES CXX)\n' && cat; } >CMakeLists.txt
     quietly cmake -S . -B build "$@"
     quietly cmake --build build
-    prints_what_the_readme_says build/glitter
     # shellcheck disable=SC2046
     carries_no_flag $(sed -n 's/^ *"command": "\(.*\)",$/\1/p' build/compile_commands.json)
+    prints_what_the_readme_says build/glitter
 }
 built_by_hand() { # a script
     quietly bash -euc "$1"
