@@ -88,11 +88,11 @@ MICA_HOST_DEVICE environment_seen<Real, K> seen_of(const Environment& environmen
         const vector3<float> towards{lane(r.x, i), lane(r.y, i), lane(r.z, i)};
         const auto one = seen_of<K>(environment, table, material, towards, lane(n_dot_v, i));
         for (std::size_t k = 0; k < K; ++k) {
-            mica::set_lane(seen.lobe.radiance[k], i, one.lobe.radiance[k]);
-            mica::set_lane(seen.lobe.share[k], i, one.lobe.share[k]);
+            set_lane(seen.lobe.radiance[k], i, one.lobe.radiance[k]);
+            set_lane(seen.lobe.share[k], i, one.lobe.share[k]);
         }
-        mica::set_lane(seen.reflectance, i, one.reflectance);
-        mica::set_lane(seen.visible_fraction, i, one.visible_fraction);
+        set_lane(seen.reflectance, i, one.reflectance);
+        set_lane(seen.visible_fraction, i, one.visible_fraction);
     }
     return seen;
 }

@@ -106,8 +106,8 @@ view_terms<Real> view_terms_of(const microfacet_table& table, Real n_dot_v, Real
     view_terms<Real> terms{};
     for (int i = 0; i < lanes_of<Real>; ++i) {
         const auto mu = static_cast<float>(lane(n_dot_v, i)), alpha = static_cast<float>(lane(roughness, i));
-        mica::set_lane(terms.visible_fraction, i, scalar_of<Real>(table.visible_fraction(mu, alpha)));
-        mica::set_lane(terms.albedo, i, table.albedo(mu, alpha)(f0));
+        set_lane(terms.visible_fraction, i, scalar_of<Real>(table.visible_fraction(mu, alpha)));
+        set_lane(terms.albedo, i, table.albedo(mu, alpha)(f0));
     }
     return terms;
 }
