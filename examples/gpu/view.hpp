@@ -6,14 +6,17 @@
 
 #include <mica/shade/glint_kernel.hpp>
 
+/// A camera before one of the two surfaces.
 struct view {
-    bool sphere;
-    unsigned width, height;
+    bool sphere;     ///< or the plane
+    unsigned width;  ///< of the picture, in pixels
+    unsigned height; ///< of the picture, in pixels
 
-    using vector = mica::vector3<float>;
+    using vector = mica::vector3<float>; ///< in the scene
+    /// What a pixel sees.
     struct hit {
-        bool seen;
-        mica::shading_point<float> point;
+        bool seen;                        ///< whether it is the surface
+        mica::shading_point<float> point; ///< where
     };
 
     /// The surface through the middle of pixel (x, y), with the analytic derivatives of uv by the pixel (Igehy 1999), as in
