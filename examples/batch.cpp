@@ -27,6 +27,6 @@ int main() {
 
 // Prints:
 //
-//     0 0 0 4 4 1 3 5 ... mean 3.51
-//     element 5: 1
+//     0 0 2 4 1 8 6 5 ... mean 3.51
+//     element 5: 8
 //     mean 1.00

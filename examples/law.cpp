@@ -23,5 +23,5 @@ int main() {
 
 // Prints:
 //
-//     once: 1 flash, 999999 do not
-//     mean 3.00, variance 3.00
+//     once: 4 flash, 999996 do not
+//     mean 3.00, variance 2.99

@@ -124,8 +124,14 @@ __global__ void shade_lights(const mica::shading_point<float>* points, std::arra
     const mica::rgb<float> f0{1, 1, 1};
     const auto directional = mica::respond(mica::directional_light{{0, 0, 1}, {1, 1, 1}}, point, beckmann, f0);
     const auto sun = mica::respond(mica::sun_light{{0, 0, 1}, {1, 1, 1}}, point, ggx, f0);
-    classes[2] = {directional.smooth, directional.probability};
-    classes[3] = {sun.smooth, sun.probability};
+    const mica::rectangle_light window{{0, 0, 2}, {0, 1, 0}, {1, 0, 0}, {1, 1, 1}};
+    const mica::disk_light lamp{{0, 0, 2}, {0, 0, -1}, 1, {1, 1, 1}};
+    const auto rectangle = mica::respond(window, point, ggx, f0, *table);
+    const auto disk = mica::respond(lamp, point, beckmann, f0, *table);
+    classes[0] = {directional.smooth, directional.probability};
+    classes[1] = {sun.smooth, sun.probability};
+    classes[2] = {rectangle.smooth, rectangle.probability};
+    classes[3] = {disk.smooth, disk.probability};
     const auto sum = plain(point, {}, classes, {0, 0, 1}, 1U).glint + adorned(point, {}, classes, {0, 0, 1}, 1U).glint +
                      published(point, {}, classes, {0, 0, 1}, 1U).glint;
     radiance[i] = mica::luminance(sum) + facet_terms(ggx, point.wo, point.normal) +

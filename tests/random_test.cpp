@@ -224,6 +224,22 @@ void expect_independent_neighbours() {
 TEST(Independence, FloatNeighbours) { expect_independent_neighbours<float>(); }
 TEST(Independence, DoubleNeighbours) { expect_independent_neighbours<double>(); }
 
+/// Streams whose index is their seed, or next to it: what a loop over i draws with {i, i}.
+TEST(Equidistribution, OfStreamsWhoseIndexIsTheirSeed) {
+    constexpr std::size_t bins = 256;
+    const std::vector<double> probabilities(bins, 1. / bins);
+    for (const std::uint32_t apart : {0U, 1U, ~0U, mica::golden_increment, 0U - mica::golden_increment})
+        for (const std::uint32_t draw : {0U, 1U}) {
+            std::vector<double> observed(bins, 0.);
+            for (std::uint32_t seed = 0; seed < correlation_draws; ++seed) {
+                uniform_stream<float> xi{seed, seed + apart};
+                for (std::uint32_t k = 0; k < draw; ++k) xi();
+                observed[static_cast<std::size_t>(xi() * bins)] += 1;
+            }
+            EXPECT_TRUE(statistics::passes(statistics::goodness_of_fit(probabilities, observed).p_value)) << apart;
+        }
+}
+
 /// Pairs on a 16 x 16 grid of the unit square: dependence that leaves the correlation at 0.
 TEST(Independence, PairsOfIndicesFillTheSquare) {
     constexpr std::size_t side = 16;

@@ -1,13 +1,14 @@
 // mica/random/uniform_stream.hpp: a counter-based stream of uniforms.
 //
-// Draw k of stream (seed, index) is a pure function of the three: mix(mix(index + (k + 1) G) ^ hash(seed)), G the
-// golden increment. No state to carry, nothing to warm up, any pixel at any time; a sequential generator would also
-// tie the lanes of a pack together.
+// Draw k of stream (seed, index) is a pure function of the three: mix(mix(index + (k + 1) G) ^ key), G the golden
+// increment, key = hash(hash(seed)). No state to carry, nothing to warm up, any pixel at any time; a sequential generator
+// would also tie the lanes of a pack together.
 //
 // Distinct counters: among n consecutive indices and d <= 4096 draws the inner sums are all different while
 // n d <= 2^32 / 2.25, because multiples of G keep that distance (three-gap theorem; with more draws the golden ratio,
 // cut to 32 bits, keeps less: tests/random_test.cpp). The seed enters hashed, between two rounds, so two seeds share a
-// number only by chance, as two random sequences would. (Raw, 2^18 consecutive seeds were not equidistributed.)
+// number only by chance, as two random sequences would. (Raw, 2^18 consecutive seeds were not equidistributed; hashed once,
+// stream `seed` of every seed began with mix(0) = 0, an extreme draw.)
 #pragma once
 
 #include <cstdint>
@@ -36,7 +37,7 @@ class uniform_stream {
 
     /// Stream `index` of the seed, at its first draw.
     MICA_HOST_DEVICE explicit constexpr uniform_stream(index_type seed, index_type index = index_type(0U))
-        : key_(hash(seed)), index_(index) {}
+        : key_(hash(hash(seed))), index_(index) {}
 
     /// The next uniform.
     MICA_HOST_DEVICE constexpr Real operator()() {
@@ -75,7 +76,7 @@ class uniform_stream {
     MICA_HOST_DEVICE constexpr uniform_stream(index_type key, index_type index, std::uint32_t counter)
         : key_(key), index_(index), counter_(counter) {}
 
-    index_type key_; ///< the seed, hashed
+    index_type key_; ///< the seed, hashed twice
     index_type index_;
     std::uint32_t counter_ = 0;
 };

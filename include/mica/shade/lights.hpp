@@ -102,7 +102,8 @@ struct view_terms {
     rgb<Real> albedo;
 };
 template <real_number Real>
-view_terms<Real> view_terms_of(const microfacet_table& table, Real n_dot_v, Real roughness, rgb<float> f0) {
+MICA_HOST_DEVICE view_terms<Real> view_terms_of(const microfacet_table& table, Real n_dot_v, Real roughness,
+                                                rgb<float> f0) {
     view_terms<Real> terms{};
     for (int i = 0; i < lanes_of<Real>; ++i) {
         const auto mu = static_cast<float>(lane(n_dot_v, i)), alpha = static_cast<float>(lane(roughness, i));
@@ -112,12 +113,13 @@ view_terms<Real> view_terms_of(const microfacet_table& table, Real n_dot_v, Real
     return terms;
 }
 
-/// An area light with its probability. Its smooth radiance is the albedo of the split sum, parted among the
-/// facets that reflect to above the horizon: all of it for a light around everything. The albedo and the number of those
-/// facets are those of GGX of the mean roughness.
+/// An area light with its probability. Its smooth radiance is the albedo of the split sum, parted among the facets that
+/// reflect to above the horizon: all of it for a light around everything. The albedo and the number of those facets are those
+/// of GGX of the mean roughness.
 template <class Facets, real_number Real>
-light_response<Real> respond_area(Real probability, vector3<Real> centre, rgb<float> radiance, vector3<Real> wo,
-                                  const Facets& facets, rgb<float> f0, const microfacet_table& table) {
+MICA_HOST_DEVICE light_response<Real> respond_area(Real probability, vector3<Real> centre, rgb<float> radiance,
+                                                   vector3<Real> wo, const Facets& facets, rgb<float> f0,
+                                                   const microfacet_table& table) {
     const auto terms = view_terms_of(table, wo.z, mica::sqrt(facets.roughness_x * facets.roughness_y), f0);
     const Real share = minimum(probability / maximum(terms.visible_fraction, Real(0.25F)), Real(1));
     return {share * (terms.albedo * broadcast<Real>(radiance)), probability,
@@ -155,8 +157,9 @@ MICA_HOST_DEVICE constexpr light_response<Real> respond(const Light& light, cons
 
 /// Rectangle.
 template <real_number Real, template <real_number> class Facets>
-light_response<Real> respond(const rectangle_light& light, const shading_point<Real>& point, const Facets<Real>& facets,
-                             rgb<float> f0, const microfacet_table& table) {
+MICA_HOST_DEVICE light_response<Real> respond(const rectangle_light& light, const shading_point<Real>& point,
+                                              const Facets<Real>& facets, rgb<float> f0,
+                                              const microfacet_table& table) {
     const auto centre = point.local(detail::broadcast<Real>(light.centre) - point.position);
     const auto u = point.local(detail::broadcast<Real>(light.half_u)),
                v = point.local(detail::broadcast<Real>(light.half_v));
@@ -173,8 +176,9 @@ light_response<Real> respond(const rectangle_light& light, const shading_point<R
 
 /// Disk.
 template <real_number Real, template <real_number> class Facets>
-light_response<Real> respond(const disk_light& light, const shading_point<Real>& point, const Facets<Real>& facets,
-                             rgb<float> f0, const microfacet_table& table) {
+MICA_HOST_DEVICE light_response<Real> respond(const disk_light& light, const shading_point<Real>& point,
+                                              const Facets<Real>& facets, rgb<float> f0,
+                                              const microfacet_table& table) {
     const auto centre = point.local(detail::broadcast<Real>(light.centre) - point.position);
     const auto normal = point.local(detail::broadcast<Real>(light.normal));
     const auto wo = point.local(point.wo);
