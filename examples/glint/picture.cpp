@@ -51,7 +51,7 @@ std::runtime_error problem(const std::string& path, const std::string& what) {
 }
 
 std::uint8_t srgb_byte(float linear) {
-    const float x = std::clamp(linear, 0.F, 1.F);
+    const float x = mica::clamp(linear, 0.F, 1.F); // NaN is black
     const float encoded = x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1 / 2.4F) - 0.055F;
     return static_cast<std::uint8_t>(std::lround(255 * encoded));
 }

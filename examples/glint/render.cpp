@@ -8,33 +8,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "option_text.hpp"
 #include "scene_file.hpp"
 
 namespace glint {
 
 namespace {
-
-/// "WxH".
-std::pair<std::size_t, std::size_t> parse_size(const std::string& text) {
-    std::size_t width = 0, height = 0;
-    const char* const end = text.data() + text.size();
-    const auto [cross, width_error] = std::from_chars(text.data(), end, width);
-    const bool has_cross = width_error == std::errc() && cross != end && *cross == 'x';
-    const auto [rest, height_error] = std::from_chars(has_cross ? cross + 1 : end, end, height);
-    if (!has_cross || height_error != std::errc() || rest != end)
-        throw std::invalid_argument("--size " + text + " is not WIDTHxHEIGHT");
-    return {width, height};
-}
-
-/// "x,y,z".
-vector parse_vector(const std::string& text) {
-    vector v{};
-    int used = 0;
-    if (std::sscanf(text.c_str(), "%f,%f,%f%n", &v.x, &v.y, &v.z, &used) != 3 ||
-        static_cast<std::size_t>(used) != text.size())
-        throw std::invalid_argument("--occluder " + text + " is not x,y,z");
-    return v;
-}
 
 /// Of the rainbow, luminance 1: turn in [0, 1).
 colour rainbow(float turn) {

@@ -191,8 +191,8 @@ struct smooth_quantile_binomial {
             detail::any_less_tail(side.variate, whole_trials.exponent, whole_trials.none), // S_0 - xi
             [&](detail::pair_of<Real> centre, detail::pair_of<Real> following) {
                 const auto next = detail::twice_reciprocals(following.first, following.second);
-                const detail::pair_of<Real> steps{detail::ramp(centre.first * (steepness.first + next.first)),
-                                                  detail::ramp(centre.second * (steepness.second + next.second))};
+                detail::pair_of<Real> steps{detail::ramp(centre.first * (steepness.first + next.first)),
+                                            detail::ramp(centre.second * (steepness.second + next.second))};
                 steepness = next;
                 return steps;
             });
