@@ -149,9 +149,9 @@ hostile() {
         printf "$header%s\n" "$size" >size.hdr
         expect_error 'size.hdr' render --env size.hdr $small
     done
-    printf "$header"'-Y 8192 +X 16384\n\x02\x02' >large.hdr
-    expect_error 'truncated: 16384x8192 pixels are not in it' render --env large.hdr $small
-    { printf "$header"'-Y 16384 +X 32768\n' && head -c 40000000 /dev/zero; } >wide.hdr
+    printf "$header"'-Y 4096 +X 8192\n\x02\x02' >large.hdr
+    expect_error 'truncated: 8192x4096 pixels are not in it' render --env large.hdr $small
+    printf "$header"'-Y 8192 +X 16384\n\x02\x02' >wide.hdr
     expect_error 'too large' render --env wide.hdr $small
     { printf "$header"'-Y 4 +X 8\n\x02\x02\x00\x08\xff\x01' && head -c 100 /dev/zero; } >runs.hdr # a run beyond the line
     expect_error 'runs.hdr: cannot be read' render --env runs.hdr $small

@@ -41,7 +41,7 @@ struct watched_file {
 };
 
 /// Maps may be so wide.
-constexpr int widest_map = 16384;
+constexpr int widest_map = 8192;
 
 /// Run-length coded, 127 texels take at least two bytes in each of four bands.
 constexpr std::uintmax_t most_texels_per_byte = 16;
