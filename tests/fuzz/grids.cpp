@@ -112,8 +112,7 @@ void require_lanes(input bytes) {
                 mica::uv_point<float>{lanes[4][i], lanes[5][i]}, trials, seed),
             probability);
         const float lane = side_by_side[static_cast<int>(i)];
-        require(std::memcmp(&lane, &alone, sizeof alone) == 0, "a lane is a scalar", static_cast<double>(lane),
-                static_cast<double>(alone));
+        require(same_bits(lane, alone), "a lane is a scalar", static_cast<double>(lane), static_cast<double>(alone));
     }
 }
 

@@ -1,6 +1,7 @@
 // tests/fuzz/input.hpp: what the fuzzers share. Bytes of libFuzzer's become numbers; what is found aborts.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -42,6 +43,13 @@ class input {
   private:
     std::span<const std::uint8_t> bytes_;
 };
+
+/// Whether two numbers are the same to the last bit.
+template <class Number>
+bool same_bits(Number a, Number b) {
+    using bytes = std::array<unsigned char, sizeof a>;
+    return std::bit_cast<bytes>(a) == std::bit_cast<bytes>(b);
+}
 
 /// Aborts, so that libFuzzer keeps the input, where what must hold does not.
 inline void require(bool holds, const char* what, double a = 0, double b = 0) {

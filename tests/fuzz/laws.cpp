@@ -77,11 +77,6 @@ void require_support(Real trials, Real probability, Real successes, Real failure
             static_cast<double>(probability));
 }
 
-template <class Real>
-bool same_bits(Real a, Real b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
-}
-
 template <class Law, class Real, int Lanes>
 void draw(input bytes) {
     using Pack = mica::pack<Real, Lanes>;
