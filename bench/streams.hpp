@@ -65,7 +65,7 @@ inline multinomial mixed_multinomial(std::size_t categories) {
 /// numbers of passes is that of the passes alone.
 inline int passes() {
     const char* const asked = std::getenv("MICA_PASSES");
-    return asked ? std::atoi(asked) : 0;
+    return asked ? static_cast<int>(std::strtol(asked, nullptr, 10)) : 0;
 }
 
 /// Registers pass(), which draws `items` items, under a name.

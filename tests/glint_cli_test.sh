@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# The program as its users call it:  glint_cli_test.sh GLINT errors|determinism|tiles|environments|comparison|furnace|lights|costs
+# The program as its users call it:
+#     glint_cli_test.sh GLINT errors|hostile|determinism|tiles|environments|comparison|furnace|lights|costs
 set -uo pipefail
 glint=$1
 part=$2
@@ -59,7 +60,7 @@ errors() {
     expect_error 'not an environment map' render --env square.hdr $small
     expect_error 'not an environment map' render --env text.hdr $small
     expect_error 'not an environment map' render --env empty.hdr $small
-    expect_error 'not an environment map' render --env folder.hdr $small
+    expect_error 'is a folder' render --env folder.hdr $small
     expect_error 'size 0x540' render --size 0x540 -o x.png
     expect_error 'size -3x5' render --size=-3x5 -o x.png
     expect_error 'size 64' render --size 64 -o x.png
@@ -136,6 +137,86 @@ errors() {
     [ -z "$(ls | grep interrupted)" ] || fail "an interrupt leaves $(ls | grep interrupted)"
     "$glint" --help >/dev/null || fail "--help"
     [ "$("$glint" render $small 2>&1 >/dev/null | wc -c)" -eq 0 ] || fail "progress in a pipe"
+}
+
+# Files that mean harm: one line, exit code 2, nothing written, at once and in little memory. Sanitizers map terabytes, so
+# memory is limited where it can be.
+hostile() {
+    local header='#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n' small="-o x.png --size 8x8" limit=unlimited
+    (ulimit -v 2000000 && "$glint" --version) >/dev/null 2>&1 && limit=2000000
+    ulimit -v "$limit"
+    for size in '-Y 16000 +X 32000' '-Y 1000000000 +X 2000000000' '-Y 99999999999999999999 +X 1' '-Y -4 +X -8' '-Y 0 +X 0' \
+        '-Y 4' '-Y +X' 'X' '' '-Y 4 +X 8 +Z 9'; do
+        printf "$header%s\n" "$size" >size.hdr
+        expect_error 'size.hdr' render --env size.hdr $small
+    done
+    printf "$header"'-Y 4096 +X 8192\n\x02\x02' >large.hdr
+    expect_error 'truncated: 8192x4096 pixels are not in it' render --env large.hdr $small
+    printf "$header"'-Y 8192 +X 16384\n\x02\x02' >wide.hdr
+    expect_error 'too large' render --env wide.hdr $small
+    { printf "$header"'-Y 4 +X 8\n\x02\x02\x00\x08\xff\x01' && head -c 100 /dev/zero; } >runs.hdr # a run beyond the line
+    expect_error 'runs.hdr: cannot be read' render --env runs.hdr $small
+    { printf '#?RADIANCE\n' && head -c 1000000 /dev/zero | tr '\0' 'x'; } >header.hdr # without an end
+    expect_error 'header.hdr' render --env header.hdr $small
+    mkfifo pipe.hdr
+    expect_error 'not a plain file' render --env pipe.hdr $small
+    expect_error 'not a plain file' render --env /dev/zero $small
+    expect_error 'render: \?.\[31m\|not expected' render "$(printf 'a\e[31m')"
+    rm ./*.hdr
+
+    scene_error() { # SAYS JSON
+        printf '%s' "$2" >scene.json
+        expect_error "$1" render --scene scene.json -o x.png
+        rm scene.json
+    }
+    head -c 3000000 /dev/zero | tr '\0' '[' >deep.json
+    expect_error 'parse error' render --scene deep.json -o x.png
+    { head -c 1000000 /dev/zero | tr '\0' '['; head -c 1000000 /dev/zero | tr '\0' ']'; } >deep.json
+    expect_error 'is not an object' render --scene deep.json -o x.png
+    rm deep.json
+    mkdir folder.json
+    expect_error 'folder.json' render --scene folder.json -o x.png
+    scene_error 'parse error' ''
+    scene_error 'parse error' '{"seed": NaN}'
+    scene_error 'parse error' $'{"law": "\xff"}'
+    scene_error 'out of range\|out_of_range' '{"softness": 1e999}'
+    scene_error 'size 0x4' '{"size": [0, 4]}'
+    scene_error 'size 4294967295x1 is not' '{"size": [4294967295, 1]}'
+    scene_error 'whole number' '{"size": [1e9, 1]}'
+    scene_error 'levels 1000000000 is not' '{"lights": [{"levels": 1000000000}]}'
+    scene_error 'whole number' '{"lights": [{"levels": -1}]}'
+    scene_error 'whole number from 0 to 2147483647' '{"lights": [{"levels": 4294967295}]}'
+    scene_error '9 lights' '{"lights": [{}, {}, {}, {}, {}, {}, {}, {}, {}]}'
+    scene_error 'at most one environment' '{"lights": [{}, {"type": "sun"}, {}]}'
+    scene_error 'radius -1' '{"surfaces": [{"radius": -1}]}'
+    scene_error 'radius 1e+30' '{"lights": [{"type": "disk", "radius": 1e30}]}'
+    scene_error 'half_angle_degrees' '{"lights": [{"type": "sun", "half_angle_degrees": 1e9}]}'
+    scene_error 'roughness inf' '{"surfaces": [{"roughness": 1e300}]}'
+    scene_error 'reflectance -0.5' '{"surfaces": [{"reflectance": [1, -0.5, 0]}]}'
+    scene_error 'centre inf' '{"surfaces": [{"centre": [1e300, 0, 0]}]}'
+    scene_error 'eye 1e+30' '{"camera": {"eye": [1e30, 0, 0]}}'
+    scene_error 'half_u -1e+20' '{"lights": [{"type": "area", "half_u": [-1e20, 0, 0], "half_v": [0, 1e-20, 0]}]}'
+    scene_error 'radiance -1' '{"lights": [{"type": "sun", "radiance": [0, -1, 0]}]}'
+    scene_error 'log density' '{"surfaces": [{"log_density": 1e9}]}'
+    scene_error 'passwd: is not an environment map' '{"lights": [{"file": "/etc/passwd"}]}'
+    # What terminals obey is not sent to them, and a name of a megabyte is cut.
+    scene_error 'unknown law .a .31mb' '{"law": "a\u001b[31mb"}'
+    printf '{"law": "%s"}' "$(head -c 100000 /dev/zero | tr '\0' 'x')" >scene.json
+    "$glint" render --scene scene.json -o x.png 2>err.txt
+    [ "$(wc -c <err.txt)" -lt 1100 ] || fail "an error of $(wc -c <err.txt) characters"
+    rm scene.json err.txt
+    # In the domain, but extreme: rendered, and nothing that is not finite.
+    printf '%s' '{"size": [16, 9], "camera": {"eye": [0, 0.5, 1e6], "target": [0, 0, 0], "field_of_view_degrees": 0.01},
+        "surfaces": [{"radius": 1e-6, "roughness": 0, "log_density": 60}, {"shape": "plane", "roughness": 1, "log_density": -60},
+                     {"radius": 100, "glint_size": 1e-30}, {"radius": 50, "glint_size": 1e30, "roughness_across": 1}],
+        "lights": [{"type": "sun", "radiance": [1e12, 1e12, 1e12], "half_angle_degrees": 180},
+                   {"type": "rectangle", "centre": [1e6, 1e6, 1e6]}, {"type": "disk", "radius": 1e6}]}' >scene.json
+    "$glint" render --scene scene.json --json -o x.png >out.json || fail "an extreme scene"
+    grep -q '"non_finite_pixels": 0,' out.json || fail "an extreme scene: $(cat out.json)"
+    if [ "$limit" != unlimited ]; then
+        rm -f x.png
+        expect_error 'not enough memory' render --size 16384x16384 -o x.png
+    fi
 }
 
 determinism() {

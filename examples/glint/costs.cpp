@@ -150,9 +150,11 @@ std::vector<long> counted_instructions(const costs_options& options, std::size_t
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
     if (error) return {};
     const fs::path folder = fs::temp_directory_path() / ("glint-costs-" + std::to_string(getpid()));
-    fs::create_directory(folder);
+    const std::string output = (folder / "out").string();
+    if ((output + program.string()).find('\'') != std::string::npos) return {}; // would end the quotes
+    if (!fs::create_directory(folder, error)) return {};                        // somebody else's
     const std::string command =
-        "valgrind --tool=callgrind --callgrind-out-file='" + (folder / "out").string() +
+        "valgrind --tool=callgrind --callgrind-out-file='" + output +
         "' --collect-atstart=no --toggle-collect=glint_shade_pixels --dump-after=glint_shade_pixels '" +
         program.string() + "' costs --counting --size " + std::to_string(options.size) + " --density " +
         std::to_string(options.log_density) + " >/dev/null 2>&1";
@@ -163,7 +165,7 @@ std::vector<long> counted_instructions(const costs_options& options, std::size_t
             long total = -1;
             for (std::string line; std::getline(dump, line);)
                 if (line.rfind("totals: ", 0) == 0 || line.rfind("summary: ", 0) == 0)
-                    total = std::atol(line.c_str() + line.find(' '));
+                    total = std::strtol(line.c_str() + line.find(' '), nullptr, 10);
             counted.push_back(total);
         }
     }

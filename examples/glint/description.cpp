@@ -1,8 +1,13 @@
 #include "description.hpp"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
+#include <string_view>
+
+#include "kernels.hpp"
 
 namespace glint {
 
@@ -23,6 +28,13 @@ void require_within(const char* name, float value, float low, float high) {
 void require_positive(const char* name, float value) {
     if (!(value > 0 && std::isfinite(value)))
         throw std::invalid_argument(std::string(name) + " " + text_of(value) + " is not positive");
+}
+
+/// Of what a scene holds, so that squares of squares stay finite.
+constexpr float smallest_size = 1e-6F, largest_size = 1e6F;
+
+void require_place(const char* name, vector v) {
+    for (const float x : {v.x, v.y, v.z}) require_within(name, x, -largest_size, largest_size);
 }
 
 void require_direction(const char* name, vector v) {
@@ -46,8 +58,11 @@ void check(const surface_description& surface) {
     require_within("roughness", surface.material.roughness, 0, 1);
     require_within("roughness_across", surface.roughness_across, 0, 1);
     require_within("log density", surface.material.log_density, -60, 60);
+    for (const float band : {surface.material.f0.r, surface.material.f0.g, surface.material.f0.b})
+        require_within("reflectance", band, 0, 1);
+    require_place("centre", surface.centre);
     require_positive("glint_size", surface.material.footprint_scale);
-    require_positive("radius", surface.radius);
+    require_within("radius", surface.radius, smallest_size, largest_size);
 }
 
 void check(const light_description& light) {
@@ -62,8 +77,12 @@ void check(const light_description& light) {
     require_direction("direction", light.direction);
     require_direction("normal", light.normal);
     require_direction("the area of a light", cross(light.half_u, light.half_v));
-    require_positive("radius", light.radius);
+    require_place("centre", light.centre);
+    require_place("half_u", light.half_u);
+    require_place("half_v", light.half_v);
+    require_within("radius", light.radius, smallest_size, largest_size);
     require_positive("half_angle_degrees", light.half_angle);
+    require_within("half_angle_degrees", light.half_angle * degrees_per_radian, 0, 180);
     require_within("glint_fraction", light.glint_fraction, 1e-6F, 1);
     for (const float band : {light.radiance.r, light.radiance.g, light.radiance.b})
         require_within("radiance", band, 0, 1e12F);
@@ -91,25 +110,36 @@ std::string names_of(const effects_description& effects) {
     return names.empty() ? "none" : names;
 }
 
-bool is_built_in(const std::string& environment) {
-    if (!environment.starts_with("lamps:")) return environment == "white";
+std::optional<float> lamps_apart(const std::string& environment) {
+    constexpr std::string_view lamps = "lamps:";
+    if (!environment.starts_with(lamps)) return std::nullopt;
     float degrees = 0;
-    int used = 0;
-    const auto text = environment.substr(6);
-    const bool number = std::sscanf(text.c_str(), "%f%n", &degrees, &used) == 1;
-    return number && static_cast<std::size_t>(used) == text.size() && degrees > 0 && degrees < 90;
+    const char* const end = environment.data() + environment.size();
+    const auto [rest, error] = std::from_chars(environment.data() + lamps.size(), end, degrees);
+    const bool is_angle = error == std::errc() && rest == end && degrees > 0 && degrees < 90;
+    return is_angle ? std::optional(degrees) : std::nullopt;
 }
+
+bool is_built_in(const std::string& environment) { return environment == "white" || lamps_apart(environment); }
 
 void check(const scene_description& description) {
     const auto is_side = [](std::size_t n) { return n >= 1 && n <= 16384; };
     if (!is_side(description.width) || !is_side(description.height))
         throw std::invalid_argument("size " + std::to_string(description.width) + "x" +
                                     std::to_string(description.height) + " is not from 1x1 to 16384x16384");
+    require_place("eye", description.camera.eye);
+    require_place("target", description.camera.target);
     require_direction("the way from eye to target", description.camera.target - description.camera.eye);
     require_within("field_of_view_degrees", description.camera.field_of_view * degrees_per_radian, 0.01F, 170);
     if (description.surfaces.empty()) throw std::invalid_argument("a scene needs a surface");
     for (const auto& surface : description.surfaces) check(surface);
     if (description.lights.empty()) throw std::invalid_argument("a scene needs a light");
+    if (description.lights.size() > most_classes)
+        throw std::invalid_argument(std::to_string(description.lights.size()) + " lights are more than the " +
+                                    std::to_string(most_classes) + " that are compiled in");
+    if (std::count_if(description.lights.begin(), description.lights.end(),
+                      [](const auto& light) { return light.type == "environment"; }) > 1)
+        throw std::invalid_argument("a scene has at most one environment");
     for (const auto& light : description.lights) check(light);
     if (description.occluder) require_direction("occluder", *description.occluder);
     check(description.counting.effects);

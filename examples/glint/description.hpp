@@ -89,6 +89,9 @@ struct scene_description {
 /// Environments without a file: "white", radiance 1 from everywhere, and "lamps:50", three coloured lamps 50 degrees apart.
 bool is_built_in(const std::string& environment);
 
+/// The degrees of "lamps:50", in (0, 90); nothing of another name.
+std::optional<float> lamps_apart(const std::string& environment);
+
 /// Throws std::invalid_argument, in one line, where a number is out of its domain or a name unknown.
 void check(const scene_description& description);
 

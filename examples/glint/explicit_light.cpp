@@ -237,7 +237,7 @@ std::unique_ptr<explicit_light> make_explicit_light(const light_description& lig
     return std::make_unique<explicit_environment>(map_of(light), occluder);
 }
 
-facet_outcomes::facet_outcomes(std::vector<outcome> all) {
+facet_outcomes::facet_outcomes(const std::vector<outcome>& all) {
     cumulated_.reserve(all.size());
     radiance_.reserve(all.size());
     double sum = 0;

@@ -45,7 +45,7 @@ struct outcome {
 /// All outcomes of a pixel; the rest of the probability is dark.
 class facet_outcomes {
   public:
-    explicit facet_outcomes(std::vector<outcome> all);
+    explicit facet_outcomes(const std::vector<outcome>& all);
 
     /// Of one facet: E[Y] and E[Y^2].
     double mean() const { return mean_; }

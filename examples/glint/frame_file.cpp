@@ -16,7 +16,10 @@ namespace glint {
 namespace {
 
 constexpr const char* origin_attribute = "glint";
-constexpr int widest = 1 << 15; ///< pixels, either way: no picture is larger
+constexpr int widest_picture = 16384; ///< pixels, either way
+
+/// More are not in a file: deflate makes 28 bytes of ours a thousandth at best, and no map is as even as that.
+constexpr std::uintmax_t most_pixels_per_byte = 64, most_texels_per_byte = 128;
 
 struct channel {
     const char* name;
@@ -44,10 +47,13 @@ Imath::Box2i box(const pixel_rectangle& tile) {
     return {{x, y}, {x + static_cast<int>(tile.width) - 1, y + static_cast<int>(tile.height) - 1}};
 }
 
-bool is_reasonable(const Imath::Box2i& window) {
-    const auto in_range = [](int low, int high) { return low > -widest && high < widest && low <= high; };
-    return in_range(window.min.x, window.max.x) && in_range(window.min.y, window.max.y) &&
-           window.max.x - window.min.x < widest && window.max.y - window.min.y < widest;
+/// At most so many pixels either way, and not so far out that sums overflow.
+bool is_reasonable(const Imath::Box2i& window, int widest) {
+    const auto in_range = [widest](int low, int high) {
+        constexpr int far_out = 1 << 24;
+        return low > -far_out && high < far_out && low <= high && high - low < widest;
+    };
+    return in_range(window.min.x, window.max.x) && in_range(window.min.y, window.max.y);
 }
 
 std::size_t length(int low, int high) { return static_cast<std::size_t>(high - low) + 1; }
@@ -93,15 +99,18 @@ void write_exr(const std::string& path, const frame& seen, const std::string& or
 } // namespace
 
 mica::environment_map read_exr_environment(const std::string& path) {
+    const std::uintmax_t bytes = size_of_plain_file(path);
     return reading(path, [&] {
         Imf::InputFile file(path.c_str());
         const Imath::Box2i window = file.header().dataWindow();
-        if (!is_reasonable(window)) throw file_error(path, "is too large");
+        if (!is_reasonable(window, widest_map))
+            throw file_error(path, "is too large: at most " + std::to_string(widest_map) + " wide is read");
         const std::size_t width = length(window.min.x, window.max.x), height = length(window.min.y, window.max.y);
         if (width != 2 * height)
             throw file_error(path, "is not an environment map: " + std::to_string(width) + "x" +
                                        std::to_string(height) + " is not twice as wide as high");
         require(path, file.header(), of_glint);
+        if (width * height > most_texels_per_byte * bytes) throw file_error(path, "is truncated");
         std::vector<mica::rgb<float>> texels(width * height);
         Imf::FrameBuffer buffer;
         add(buffer, channels_of(texels, of_glint), window);
@@ -127,6 +136,7 @@ void frame_file::save(const frame& seen, const frame_statistics& statistics, con
 }
 
 frame_of_file read_frame(const std::string& path) {
+    const std::uintmax_t bytes = size_of_plain_file(path);
     return reading(path, [&] {
         Imf::InputFile file(path.c_str());
         const auto* const origin = file.header().findTypedAttribute<Imf::StringAttribute>(origin_attribute);
@@ -134,9 +144,12 @@ frame_of_file read_frame(const std::string& path) {
         require(path, file.header(), of_glint);
         require(path, file.header(), of_smooth);
         const Imath::Box2i whole = file.header().displayWindow(), window = file.header().dataWindow();
-        if (!is_reasonable(whole) || !is_reasonable(window) || window.min.x < 0 || window.min.y < 0 ||
-            whole.min.x != 0 || whole.min.y != 0 || window.max.x > whole.max.x || window.max.y > whole.max.y)
+        if (!is_reasonable(whole, widest_picture) || !is_reasonable(window, widest_picture) || window.min.x < 0 ||
+            window.min.y < 0 || whole.min.x != 0 || whole.min.y != 0 || window.max.x > whole.max.x ||
+            window.max.y > whole.max.y)
             throw file_error(path, "is not a tile of its picture");
+        if (length(window.min.x, window.max.x) * length(window.min.y, window.max.y) > most_pixels_per_byte * bytes)
+            throw file_error(path, "is truncated");
         const pixel_rectangle tile{static_cast<std::size_t>(window.min.x), static_cast<std::size_t>(window.min.y),
                                    length(window.min.x, window.max.x), length(window.min.y, window.max.y)};
         frame_of_file result{frame(length(0, whole.max.x), length(0, whole.max.y), tile), origin->value()};

@@ -1,7 +1,9 @@
 // glint: the command-line face of mica.
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -16,10 +18,16 @@
 
 namespace {
 
-/// Errors are one line, whatever names they quote.
+/// Errors are one line, whatever names they quote: without control characters, and not endless.
 std::string one_line(std::string text) {
+    constexpr std::size_t longest = 1000;
     while (!text.empty() && text.back() == '\n') text.pop_back();
-    std::replace(text.begin(), text.end(), '\n', ' ');
+    if (text.size() > longest) {
+        text.resize(longest);
+        text += " ...";
+    }
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
     return text;
 }
 
@@ -250,6 +258,9 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
     try {
         return run(argc, argv);
+    } catch (const std::bad_alloc&) {
+        std::fputs("glint: not enough memory\n", stderr);
+        return 2;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "glint: %s\n", one_line(error.what()).c_str());
         return 2;

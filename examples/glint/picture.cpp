@@ -14,8 +14,6 @@
 #include <stb_image_write.h>
 #include <unistd.h>
 
-#include "frame_file.hpp"
-
 namespace glint {
 
 namespace {
@@ -42,8 +40,11 @@ struct watched_file {
     static int eof(void* self) { return std::feof(static_cast<watched_file*>(self)->file); }
 };
 
+/// Run-length coded, 127 texels take at least two bytes in each of four bands.
+constexpr std::uintmax_t most_texels_per_byte = 16;
+
 std::uint8_t srgb_byte(float linear) {
-    const float x = std::clamp(linear, 0.F, 1.F);
+    const float x = mica::clamp(linear, 0.F, 1.F); // NaN is black
     const float encoded = x <= 0.0031308F ? 12.92F * x : 1.055F * std::pow(x, 1 / 2.4F) - 0.055F;
     return static_cast<std::uint8_t>(std::lround(255 * encoded));
 }
@@ -54,30 +55,50 @@ std::runtime_error file_error(const std::string& path, const std::string& what) 
     return std::runtime_error(path + ": " + what);
 }
 
+std::uintmax_t size_of_plain_file(const std::string& path) {
+    std::error_code error;
+    const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+    if (error == std::errc::is_a_directory) throw file_error(path, "is a folder");
+    if (error == std::errc::not_supported) throw file_error(path, "is not a plain file"); // a pipe, a device
+    if (error) throw file_error(path, error.message());
+    return bytes;
+}
+
 mica::environment_map read_environment(const std::string& path) {
-    std::error_code ignored;
-    if (std::filesystem::is_directory(path, ignored)) throw file_error(path, "is a folder, not an environment map");
-    if (path.ends_with(".exr")) return read_exr_environment(path);
+    const std::uintmax_t bytes = size_of_plain_file(path);
     const std::unique_ptr<std::FILE, file_closer> file(std::fopen(path.c_str(), "rb"));
     if (!file) throw file_error(path, std::strerror(errno));
 
     watched_file watched{file.get()};
     const stbi_io_callbacks callbacks{watched_file::read, watched_file::skip, watched_file::eof};
+    const auto start_again = [&] {
+        std::rewind(file.get());
+        watched.ran_out = false;
+    };
     if (!stbi_is_hdr_from_callbacks(&callbacks, &watched))
         throw file_error(path, "is not an environment map (expected a Radiance .hdr or OpenEXR .exr file)");
-    std::rewind(file.get());
-    watched.ran_out = false;
 
+    // The size first: nothing is allocated for a picture that cannot be in the file.
     int width = 0, height = 0, bands = 0;
+    start_again();
+    const bool has_size = stbi_info_from_callbacks(&callbacks, &watched, &width, &height, &bands) != 0;
+    if (watched.ran_out) throw file_error(path, "is truncated");
+    if (!has_size)
+        throw file_error(path, "cannot be read: its header has no FORMAT=32-bit_rle_rgbe or no -Y height +X width");
+    const std::string size = std::to_string(width) + "x" + std::to_string(height);
+    if (height < 1 || height > widest_map || width != 2 * height)
+        throw file_error(path, "is not an environment map: " + size + " is not twice as wide as high");
+    if (width > widest_map)
+        throw file_error(path, "is too large: " + size + ", at most " + std::to_string(widest_map) + " wide is read");
+    const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
+    if (w * h > most_texels_per_byte * bytes) throw file_error(path, "is truncated: " + size + " pixels are not in it");
+
+    start_again();
     const std::unique_ptr<float, decltype(&stbi_image_free)> data(
         stbi_loadf_from_callbacks(&callbacks, &watched, &width, &height, &bands, 3), &stbi_image_free);
     if (watched.ran_out) throw file_error(path, "is truncated");
     if (!data) throw file_error(path, std::string("cannot be read: ") + stbi_failure_reason());
-    if (width != 2 * height || height < 1)
-        throw file_error(path, "is not an environment map: " + std::to_string(width) + "x" + std::to_string(height) +
-                                   " is not twice as wide as high");
 
-    const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
     std::vector<mica::rgb<float>> texels(w * h);
     for (std::size_t i = 0; i < w * h; ++i) {
         const float* band = data.get() + 3 * i;

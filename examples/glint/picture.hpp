@@ -17,6 +17,13 @@ struct radiance_picture {
     std::vector<mica::rgb<float>> pixels;
 };
 
+/// Some of a picture's pixels.
+struct pixel_rectangle {
+    std::size_t left = 0, top = 0, width = 0, height = 0;
+
+    std::size_t area() const { return width * height; }
+};
+
 /// 8-bit sRGB, row by row from the top.
 struct srgb_picture {
     std::size_t width = 0, height = 0;
@@ -26,8 +33,14 @@ struct srgb_picture {
         : width(width), height(height), bytes(3 * width * height, grey) {}
 };
 
-/// An equirectangular map, Radiance .hdr or OpenEXR. Throws std::runtime_error, in one line, where it is missing, truncated, of another
-/// format, or not twice as wide as high.
+/// Environment maps may be so wide.
+inline constexpr int widest_map = 8192;
+
+/// In bytes. Throws std::runtime_error, in one line, where there is no such file or it is a folder, a pipe or a device.
+std::uintmax_t size_of_plain_file(const std::string& path);
+
+/// An equirectangular Radiance file. Throws std::runtime_error, in one line, where it is missing, truncated, of another
+/// format, too large, or not twice as wide as high.
 mica::environment_map read_environment(const std::string& path);
 
 /// Exposure, then x (1 + x / white^2) / (1 + x) of the luminance, the bands in proportion, then the sRGB curve.

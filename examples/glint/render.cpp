@@ -9,53 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "frame_file.hpp"
+#include "option_text.hpp"
 #include "scene_file.hpp"
 
 namespace glint {
 
 namespace {
-
-/// "WxH".
-std::pair<std::size_t, std::size_t> parse_size(const std::string& text) {
-    std::size_t width = 0, height = 0;
-    const char* const end = text.data() + text.size();
-    const auto [cross, width_error] = std::from_chars(text.data(), end, width);
-    const bool has_cross = width_error == std::errc() && cross != end && *cross == 'x';
-    const auto [rest, height_error] = std::from_chars(has_cross ? cross + 1 : end, end, height);
-    if (!has_cross || height_error != std::errc() || rest != end)
-        throw std::invalid_argument("--size " + text + " is not WIDTHxHEIGHT");
-    return {width, height};
-}
-
-/// "x,y,z".
-vector parse_vector(const std::string& text) {
-    vector v{};
-    int used = 0;
-    if (std::sscanf(text.c_str(), "%f,%f,%f%n", &v.x, &v.y, &v.z, &used) != 3 ||
-        static_cast<std::size_t>(used) != text.size())
-        throw std::invalid_argument("--occluder " + text + " is not x,y,z");
-    return v;
-}
-
-/// "x,y,w,h" within the picture, or all of it.
-pixel_rectangle parse_tile(const std::string& text, std::size_t width, std::size_t height) {
-    if (text.empty()) return {0, 0, width, height};
-    std::array<std::size_t, 4> number{};
-    const char *at = text.data(), *const end = at + text.size();
-    bool good = true;
-    for (std::size_t i = 0; i < number.size() && good; ++i) {
-        const auto [rest, error] = std::from_chars(at, end, number[i]);
-        const bool last = i + 1 == number.size();
-        good = error == std::errc() && (last ? rest == end : rest != end && *rest == ',');
-        at = rest + (last ? 0 : 1);
-    }
-    if (!good) throw std::invalid_argument("--tile " + text + " is not x,y,width,height");
-    const auto [left, top, w, h] = number;
-    if (w < 1 || h < 1 || left >= width || top >= height || w > width - left || h > height - top)
-        throw std::invalid_argument("--tile " + text + " is not within " + std::to_string(width) + "x" +
-                                    std::to_string(height));
-    return {left, top, w, h};
-}
 
 /// Of the rainbow, luminance 1: turn in [0, 1).
 colour rainbow(float turn) {

@@ -12,13 +12,6 @@
 
 namespace glint {
 
-/// Some of a picture's pixels.
-struct pixel_rectangle {
-    std::size_t left = 0, top = 0, width = 0, height = 0;
-
-    std::size_t area() const { return width * height; }
-};
-
 /// Where no surface is.
 inline constexpr mica::rgb<float> background{0, 0, 0};
 

@@ -1,8 +1,11 @@
 #include "scene_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <limits>
+#include <new>
 #include <set>
 #include <stdexcept>
 
@@ -82,8 +85,9 @@ class fields {
     }
     template <std::integral Value>
     static void set(const json& from, const std::string& place, Value& value) {
-        if (!from.is_number_integer() || from.get<double>() < 0 || from.get<double>() > 4294967295.0)
-            throw std::invalid_argument(place + " is not a whole number from 0 to 4294967295");
+        constexpr auto most = std::min<std::uint64_t>(4294967295U, std::numeric_limits<Value>::max());
+        if (!from.is_number_integer() || from.get<double>() < 0 || from.get<double>() > static_cast<double>(most))
+            throw std::invalid_argument(place + " is not a whole number from 0 to " + std::to_string(most));
         value = from.get<Value>();
     }
     template <class Value, std::size_t Size>
@@ -207,9 +211,9 @@ scene_description read_scene(const std::string& path) {
     if (!file) throw std::runtime_error(path + " cannot be read");
     try {
         return read_fields(json::parse(file), std::filesystem::path(path).parent_path());
-    } catch (const json::exception& error) {
-        throw std::invalid_argument(path + ": " + error.what());
-    } catch (const std::invalid_argument& error) {
+    } catch (const std::bad_alloc&) {
+        throw;
+    } catch (const std::exception& error) {
         throw std::invalid_argument(path + ": " + error.what());
     }
 }

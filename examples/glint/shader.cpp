@@ -8,6 +8,7 @@
 #include <mica/shade/environment_glints.hpp>
 #include <mica/shade/lights.hpp>
 
+#include "frame_file.hpp"
 #include "picture.hpp"
 #include "scene.hpp"
 
@@ -165,9 +166,6 @@ std::vector<std::unique_ptr<light_source>> make_lights(const scene_description& 
     check(description);
     std::vector<std::unique_ptr<light_source>> lights;
     for (const auto& light : description.lights) lights.push_back(make_light(light, description));
-    const auto environments =
-        std::count_if(lights.begin(), lights.end(), [](const auto& l) { return l->takes_the_rest(); });
-    if (environments > 1) throw std::invalid_argument("a scene has at most one environment");
     // The environment first, so that its dimmest class is class 0.
     std::stable_partition(lights.begin(), lights.end(), [](const auto& light) { return light->takes_the_rest(); });
     return lights;
@@ -177,8 +175,9 @@ std::vector<std::unique_ptr<light_source>> make_lights(const scene_description& 
 
 mica::environment_map map_of(const light_description& light) {
     if (light.file == "white") return white_environment();
-    if (is_built_in(light.file)) return lamps_environment(std::stof(light.file.substr(6)));
-    return light.file.empty() ? procedural_environment() : read_environment(light.file);
+    if (const auto degrees = lamps_apart(light.file)) return lamps_environment(*degrees);
+    if (light.file.empty()) return procedural_environment();
+    return light.file.ends_with(".exr") ? read_exr_environment(light.file) : read_environment(light.file);
 }
 
 shader::shader(const scene_description& description) : lights_(make_lights(description)) {

@@ -64,7 +64,7 @@ MICA_HOST_DEVICE constexpr footprint<Real> make_footprint(const uv_derivatives<R
     const auto undefined = is_nan(m.du_dx) || is_nan(m.dv_dx) || is_nan(m.du_dy) || is_nan(m.dv_dy);
     const Integer size_exponent = binary_exponent(size);
     const auto covers =
-        !undefined && size_exponent > Integer(-Format::bias) && size_exponent < Integer(Format::bias + 1);
+        !undefined && size_exponent > Integer(-Format::bias) && size_exponent < Integer(Format::bias) + Integer(1);
 
     // By a power of two, so that a rescaled footprint has the same digits. Its inverse is a normal number, too.
     const Integer exponent = select(covers, minimum(size_exponent, Integer(Format::bias - 1)), Integer(0));

@@ -34,7 +34,7 @@ struct bernoulli_sum_binomial {
 
         Real sum = Real(0);
         for (std::size_t k = 0; k < most_trials; ++k) {
-            const auto succeeds = trial_xi[k] < p && n > Real(static_cast<scalar_of<Real>>(k));
+            const auto succeeds = (trial_xi[k] < p) && (n > Real(static_cast<scalar_of<Real>>(k)));
             sum = sum + select(succeeds, Real(1), Real(0));
         }
         const Real gaussian = clamp(mica::floor(n * p + mica::sqrt(n * p * (Real(1) - p)) * z), Real(0), n);

@@ -45,6 +45,10 @@ struct pair_of {
     Real second;
 };
 
+/// Smaller uniforms count as this. A ramp is at least 1e-18 wide, and reaches half as far below its step: a smaller uniform
+/// would give half a success where N or p is 0.
+inline constexpr float smallest_told_apart = 0x1p-58F;
+
 /// 2 / a and 2 / b by one division. Below 1e-18, where no uniform tells a ramp from a step, those of 1e-18.
 template <real_number Real>
 MICA_HOST_DEVICE constexpr pair_of<Real> twice_reciprocals(Real a, Real b) {
@@ -177,7 +181,8 @@ struct smooth_quantile_binomial {
         using Scalar = scalar_of<Real>;
         constexpr Scalar gates = Gates;
         const auto [n, success_probability] = detail::in_domain(trials, probability);
-        const auto side = detail::make_rarer_side(success_probability, xi());
+        const auto side =
+            detail::make_rarer_side(success_probability, maximum(xi(), Real(detail::smallest_told_apart)));
         const Real p = side.probability;
         const auto whole_trials = detail::make_whole_trials(n, p);
         const Real part = whole_trials.part;
@@ -187,8 +192,8 @@ struct smooth_quantile_binomial {
             detail::any_less_tail(side.variate, whole_trials.exponent, whole_trials.none), // S_0 - xi
             [&](detail::pair_of<Real> centre, detail::pair_of<Real> following) {
                 const auto next = detail::twice_reciprocals(following.first, following.second);
-                const detail::pair_of<Real> steps{detail::ramp(centre.first * (steepness.first + next.first)),
-                                                  detail::ramp(centre.second * (steepness.second + next.second))};
+                detail::pair_of<Real> steps{detail::ramp(centre.first * (steepness.first + next.first)),
+                                            detail::ramp(centre.second * (steepness.second + next.second))};
                 steepness = next;
                 return steps;
             });

@@ -72,8 +72,9 @@ class facet_set {
             const double slope_u = slope(random), slope_v = slope(random);
             const bool jittered = positions == facet_positions::jittered;
             const auto side = static_cast<double>(per_side);
-            unsorted[i] = {jittered ? (static_cast<double>(i % per_side) + in_u) / side : in_u,
-                           jittered ? (static_cast<double>(i / per_side) + in_v) / side : in_v, slope_u, slope_v};
+            const std::size_t column = i % per_side, row = i / per_side;
+            unsorted[i] = {jittered ? (static_cast<double>(column) + in_u) / side : in_u,
+                           jittered ? (static_cast<double>(row) + in_v) / side : in_v, slope_u, slope_v};
         }
         // By the square of the lattice in which they lie, so that a footprint finds its own.
         for (const auto& f : unsorted) ++first_[square_of(f) + 1];

@@ -135,7 +135,7 @@ struct glint_kernel {
                                                 Real trials, vector3<Real> half_vector, const glint_material& material,
                                                 std::uint32_t seed) const {
         const Real scale = Real(material.footprint_scale);
-        const auto vertices = [&] {
+        auto vertices = [&] {
             if constexpr (has_half_vectors) {
                 const Real per_cell = Real(1 / effect.facet_roughness);
                 const half_vector_point<Real> cell{half_vector.x * per_cell, half_vector.y * per_cell};

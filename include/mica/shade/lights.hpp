@@ -85,12 +85,13 @@ struct mirrored {
     MICA_HOST_DEVICE constexpr mirrored(vector3<float> towards, rgb<float> irradiance, const shading_point<Real>& point,
                                         const Facets& facets, rgb<float> f0) {
         const auto wi = point.local(broadcast<Real>(towards)), wo = point.local(point.wo);
-        const auto lit = (wi.z > Real(0)) && (wo.z > Real(0));
-        half_vector = normalized_or_zero(wi + wo);
+        const auto sum = wi + wo; // 0 for opposite directions, both along the horizon
+        const auto lit = (wi.z > Real(0)) && (wo.z > Real(0)) && (dot(sum, sum) > Real(1e-20F));
+        half_vector = normalized_or_zero(sum);
         wi_dot_h = maximum(dot(wi, half_vector), Real(1e-6F));
         relative_density = select(lit, facets.relative_density(half_vector), Real(0));
         const Real common = relative_density * facets.density_at_normal() * facets.masking_shadowing(wi, wo) /
-                            (Real(4) * select(lit, wo.z, Real(1)));
+                            (Real(4) * maximum(wo.z, Real(1e-6F)));
         smooth = common * (schlick_fresnel(f0, wi_dot_h) * broadcast<Real>(irradiance));
     }
 };

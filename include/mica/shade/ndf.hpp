@@ -60,8 +60,9 @@ struct stretched_distribution {
         const auto above = h.z > Real(0);
         const Real z = select(above, h.z, Real(1));
         const Real x = h.x / (z * limited(roughness_x)), y = h.y / (z * limited(roughness_y));
-        const Real square = z * z;
-        return select(above, Shape::density(x * x + y * y) / (square * square), Real(0));
+        const Real fourth = (z * z) * (z * z);
+        const auto counted = above && (fourth > Real(0)); // else, at the very horizon, 0 over 0
+        return select(counted, Shape::density(x * x + y * y) / select(counted, fourth, Real(1)), Real(0));
     }
 
     /// D_H: facet area per surface area, the integral of D over the hemisphere; from 1 (mirror) to 2 (GGX at 1). With two
@@ -161,7 +162,7 @@ struct beckmann_shape {
         const Real c = Real(1) / mica::sqrt(maximum(t, Real(1e-12F)));
         const Real fit =
             (Real(1) - Real(1.259F) * c + Real(0.396F) * c * c) / (Real(3.535F) * c + Real(2.181F) * c * c);
-        return select(c < Real(1.6F), fit, Real(0));
+        return select(c < Real(1.6F), maximum(fit, Real(0)), Real(0)); // the fit is -6e-5 between 1.55 and 1.6
     }
 };
 
