@@ -112,7 +112,7 @@ class contour_area {
             inside = minimum(inside, dot(mirror_, normal));
             arcs[i] = graded_edge(circle_arc<Real>::between(start, select(above, end, start), normal));
         }
-        arcs[Corners] = graded_edge(horizon.arc());
+        arcs.back() = graded_edge(horizon.arc());
         return area(arcs, inside > Real(0));
     }
 
@@ -142,7 +142,7 @@ class contour_area {
         horizon_points horizon;
         horizon.out_of = select(cut && !hidden, middle + aside_of_it, horizon.out_of);
         horizon.into = select(cut && !hidden, middle - aside_of_it, horizon.into);
-        arcs[quarters] = graded_edge(horizon.arc());
+        arcs.back() = graded_edge(horizon.arc());
         return area(arcs, inside);
     }
 
