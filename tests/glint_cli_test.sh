@@ -100,6 +100,8 @@ errors() {
     expect_error 'one_grid is for counts' render --one-grid $small
     expect_error 'counts are not compiled in for law' render --interpolate counts --law exact $small
     expect_error 'tint 3 is not in' render --tint 3 $small
+    expect_error 'env is for environments, not for --light sun' render --light sun --env missing.hdr $small
+    expect_error 'levels is for environments' render --light area --levels 5 $small
     expect_error 'knows one light' compare --light wdh20 -o x.png
     expect_error 'facets is not in' compare --light sun --facets 0 -o x.png
     expect_error 'size is not in' costs --size 1
@@ -114,6 +116,8 @@ errors() {
     scene_error 'scene.lights\[0\].radiance is not an array of 3 numbers' '{"lights": [{"type": "sun", "radiance": [1, 1]}]}'
     scene_error 'scene.seed is not a whole number' '{"seed": -1}'
     scene_error 'scene.surfaces\[1\].shape is not a string' '{"surfaces": [{}, {"shape": 4}]}'
+    scene_error 'environments are compiled in for ggx' '{"surfaces": [{"distribution": "beckmann"}]}'
+    scene_error 'environments are compiled in for ggx' '{"surfaces": [{}, {"roughness_across": 0.9}]}'
     scene_error 'needs a light' '{"lights": []}'
     scene_error 'needs a surface' '{"surfaces": []}'
     scene_error "unknown light 'moon'" '{"lights": [{"type": "moon"}]}'

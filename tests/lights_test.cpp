@@ -320,6 +320,19 @@ TEST(Lights, AreFiniteEverywhere) {
                         }
                     });
                 });
+    // In the plane of a light it is dark, wherever it lies.
+    for (float turn = 0; turn < 6; turn += 0.01F) {
+        const direction u{std::cos(turn), std::sin(turn), 0.5F},
+            v = mica::normalized(cross(u, direction{0.3F, -0.2F, 0.7F}));
+        const direction away = mica::normalized(cross(u, v)), centre = 3.F * u + 0.7F * v;
+        const mica::ggx<float> rough{0.5F, 0.5F};
+        EXPECT_EQ(respond(mica::rectangle_light{centre, u, v, {1, 1, 1}}, seen_from(0.5F), rough, {1, 1, 1}, table())
+                      .probability,
+                  0);
+        EXPECT_EQ(respond(mica::disk_light{centre, away, 1, {1, 1, 1}}, seen_from(0.5F), rough, {1, 1, 1}, table())
+                      .probability,
+                  0);
+    }
     // Behind a rectangle and a disk it is dark.
     const auto point = seen_from(0);
     const mica::ggx<float> facets{0.3F, 0.3F};

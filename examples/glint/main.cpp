@@ -60,7 +60,8 @@ void add_light(CLI::App* command, glint::render_options& scene) {
         ->add_option("--classes", scene.classes,
                      "what parts the environment's light: brightness, colour, or published: as in KK25")
         ->capture_default_str();
-    command->add_option("--occluder", scene.occluder, "x,y,z: a wall; nothing shines from directions on its side");
+    command->add_option("--occluder", scene.occluder,
+                        "x,y,z: a wall; nothing shines from directions on its side (area lights: by their centre)");
 }
 
 /// The options of a command that decide what is in its picture, name=value.
@@ -227,6 +228,11 @@ int run(int argc, char** argv) {
                 !option->check_lname("json") && !option->check_lname("threads") && !option->check_lname("tile"))
                 throw std::invalid_argument(option->get_name() +
                                             " is for scenes without a file: the file of --scene says it");
+    if (render.light != "environment" && render.light != "wdh20")
+        for (const char* const option : {"--env", "--levels", "--classes"})
+            if (render_command->count(option) > 0)
+                throw std::invalid_argument(std::string(option) + " is for environments, not for --light " +
+                                            render.light);
     if (render_command->count("--env") > 0 && render.environment.empty()) throw std::invalid_argument("--env is empty");
     std::optional<tbb::global_control> limit;
     if (threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));

@@ -8,7 +8,9 @@
 //
 // Rectangles and disks: a facet flashes where it reflects the eye's ray into the light, so p is the facet area of the light's
 // half vectors over D_H (contour_area.hpp), of what is above the horizon. KK24 takes it from linearly transformed cosines. p
-// and the smooth radiance have the same error, so that no light is lost by it.
+// and the smooth radiance have the same error, so that no light is lost by it. The smooth radiance is that of the split sum, as
+// under environments: six walls around a point are a white environment. It has no Fresnel term and no shadowing of its own
+// direction, which suns have: on rough surfaces a sun and a far disk of its size differ, at the rim by several times.
 //
 // Sources: DB23 Eq. 6-9 (directional); KK24 (sun, area).
 #pragma once
@@ -114,6 +116,14 @@ MICA_HOST_DEVICE view_terms<Real> view_terms_of(const microfacet_table& table, R
     return terms;
 }
 
+/// Whether the side of a plane through `centre` to which `normal` points is seen from the origin; not from within the plane,
+/// where rounding would decide.
+template <real_number Real>
+MICA_HOST_DEVICE constexpr mask_of<Real> shines_here(vector3<Real> centre, vector3<Real> normal) {
+    const Real height = dot(centre, normal);
+    return (height < Real(0)) && (height * height > Real(1e-12F) * (dot(centre, centre) * dot(normal, normal)));
+}
+
 /// An area light with its probability. Its smooth radiance is the albedo of the split sum, parted among the facets that
 /// reflect to above the horizon: all of it for a light around everything. The albedo and the number of those facets are those
 /// of GGX of the mean roughness.
@@ -166,7 +176,7 @@ MICA_HOST_DEVICE light_response<Real> respond(const rectangle_light& light, cons
                v = point.local(detail::broadcast<Real>(light.half_v));
     const std::array<vector3<Real>, 4> corners{centre - u - v, centre - u + v, centre + u + v, centre + u - v};
     const auto wo = point.local(point.wo);
-    const auto lit = (dot(centre, cross(u, v)) < Real(0)) && (wo.z > Real(0));
+    const auto lit = detail::shines_here(centre, cross(u, v)) && (wo.z > Real(0));
     Real probability = Real(0);
     if (any(lit)) {
         const detail::contour_area<Facets<Real>, Real> contour(facets, wo);
@@ -183,7 +193,7 @@ MICA_HOST_DEVICE light_response<Real> respond(const disk_light& light, const sha
     const auto centre = point.local(detail::broadcast<Real>(light.centre) - point.position);
     const auto normal = point.local(detail::broadcast<Real>(light.normal));
     const auto wo = point.local(point.wo);
-    const auto lit = (dot(centre, normal) < Real(0)) && (wo.z > Real(0));
+    const auto lit = detail::shines_here(centre, normal) && (wo.z > Real(0));
     Real probability = Real(0);
     if (any(lit)) {
         const detail::contour_area<Facets<Real>, Real> contour(facets, wo);

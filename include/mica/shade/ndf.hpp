@@ -7,7 +7,7 @@
 //
 // with P(q) = 1 / (pi (1+q)^2) for GGX and exp(-q) / pi for Beckmann. Along a ray from the origin a is constant, so the area
 // inside a contour is the integral of F(q) d psi / (2 pi) over its azimuth psi, with F(q) = integral from 0 to q of pi P w.
-// F is in closed form; the lights that need it are in lights.hpp. Derived for mica; at a contour around everything it
+// F is in closed form; contour_area.hpp integrates it. Derived for mica; at a contour around everything it
 // is D_H of KK25 Sec. 3.2.
 #pragma once
 
