@@ -291,7 +291,7 @@ class contour_area {
                     continue;
                 }
             }
-            for (++index; index % 2 == 0; index /= 2) --depth;
+            for (++index; index % 2 == 0; index /= 2) --depth; // the next part, at the depth where it begins
         }
         return value;
     }
