@@ -141,8 +141,8 @@ void check(const scene_description& description) {
                       [](const auto& light) { return light.type == "environment"; }) > 1)
         throw std::invalid_argument("a scene has at most one environment");
     for (const auto& light : description.lights) check(light);
-    const auto is_environment = [](const auto& light) { return light.type == "environment" || light.type == "wdh20"; };
-    if (std::any_of(description.lights.begin(), description.lights.end(), is_environment))
+    if (std::any_of(description.lights.begin(), description.lights.end(),
+                    [](const auto& light) { return is_environment(light.type); }))
         for (const auto& surface : description.surfaces)
             if (surface.distribution != "ggx" || surface.roughness_across > 0)
                 throw std::invalid_argument(

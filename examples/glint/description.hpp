@@ -50,6 +50,9 @@ struct effects_description {
     bool any() const { return angular_grid || varied_density || tint || smooth_tolerance || one_grid; }
 };
 
+/// Of a light's type: whether it shines from all around.
+inline bool is_environment(const std::string& type) { return type == "environment" || type == "wdh20"; }
+
 /// Whether a wall on that side hides what is in a direction.
 inline bool hides(const std::optional<vector>& side, vector direction) { return side && dot(direction, *side) > 0; }
 

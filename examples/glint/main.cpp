@@ -64,12 +64,17 @@ void add_light(CLI::App* command, glint::render_options& scene) {
                         "x,y,z: a wall; nothing shines from directions on its side (area lights: by their centre)");
 }
 
+/// Whether an option decides what is in the picture, not where it goes or how it is made.
+bool is_of_the_picture(const CLI::Option& option) {
+    return !option.check_lname("output") && !option.check_lname("tile") && !option.check_lname("json") &&
+           !option.check_lname("threads");
+}
+
 /// The options of a command that decide what is in its picture, name=value.
 std::string origin_of(const CLI::App& command) {
     std::string text;
     for (const CLI::Option* const option : command.get_options())
-        if (option->count() > 0 && !option->check_lname("output") && !option->check_lname("tile") &&
-            !option->check_lname("json") && !option->check_lname("threads"))
+        if (option->count() > 0 && is_of_the_picture(*option))
             for (const auto& value : option->results()) text += option->get_name() + "=" + value + " ";
     return text;
 }
@@ -224,11 +229,10 @@ int run(int argc, char** argv) {
         throw std::invalid_argument("--threads " + std::to_string(threads) + " is not in [0, 1024]");
     if (render_command->count("--scene") > 0)
         for (const CLI::Option* const option : render_command->get_options())
-            if (option->count() > 0 && !option->check_lname("scene") && !option->check_lname("output") &&
-                !option->check_lname("json") && !option->check_lname("threads") && !option->check_lname("tile"))
+            if (option->count() > 0 && is_of_the_picture(*option) && !option->check_lname("scene"))
                 throw std::invalid_argument(option->get_name() +
                                             " is for scenes without a file: the file of --scene says it");
-    if (render.light != "environment" && render.light != "wdh20")
+    if (!glint::is_environment(render.light))
         for (const char* const option : {"--env", "--levels", "--classes"})
             if (render_command->count(option) > 0)
                 throw std::invalid_argument(std::string(option) + " is for environments, not for --light " +

@@ -48,7 +48,7 @@ vector turned(vector v, float angle) {
 std::vector<light_description> arc_of(const light_description& light, int count) {
     if (count < 1 || count > 8) throw std::invalid_argument("--lights " + std::to_string(count) + " is not in [1, 8]");
     if (count == 1) return {light};
-    if (light.type == "environment" || light.type == "wdh20")
+    if (is_environment(light.type))
         throw std::invalid_argument("--lights " + std::to_string(count) + ": an environment is one light");
     std::vector<light_description> lights;
     for (int i = 0; i < count; ++i) {

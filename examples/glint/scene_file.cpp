@@ -145,7 +145,7 @@ light_description read_light(const json& object, const std::string& place, const
     light_description light;
     fields from(object, place);
     from.read("type", light.type);
-    const bool environment = light.type == "environment" || light.type == "wdh20";
+    const bool environment = is_environment(light.type);
     if (environment) {
         from.read("file", light.file);
         from.read("levels", light.levels);

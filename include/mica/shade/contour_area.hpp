@@ -23,7 +23,7 @@
 
 namespace mica::detail {
 
-inline constexpr float pi_float = 3.14159265F;
+inline constexpr auto pi_float = static_cast<float>(pi);
 
 /// a / |a|, and 0 for 0.
 template <real_number Real>
@@ -87,8 +87,13 @@ template <class Facets, real_number Real>
 class contour_area {
   public:
     MICA_HOST_DEVICE constexpr contour_area(const Facets& facets, vector3<Real> wo)
-        : total_(facets.facet_area()), roughness_x_(Facets::limited(facets.roughness_x)),
-          roughness_y_(Facets::limited(facets.roughness_y)), wo_(wo), mirror_{-wo.x, -wo.y, wo.z} {}
+        : total_(facets.facet_area()), wo_(wo), mirror_{-wo.x, -wo.y, wo.z} {
+        const Real x = Facets::limited(facets.roughness_x), y = Facets::limited(facets.roughness_y);
+        inverse_x_ = Real(1) / x;
+        inverse_y_ = Real(1) / y;
+        least_ = minimum(x * x, y * y);
+        most_ = maximum(x * x, y * y);
+    }
 
     /// Of all facets: D_H.
     MICA_HOST_DEVICE constexpr Real total() const { return total_; }
@@ -191,16 +196,15 @@ class contour_area {
         const auto m = l + length * wo_; // along the half vector
         const auto dm = dl + (dot(l, dl) * inverse_length) * wo_;
         const Real inverse_z = Real(1) / maximum(m.z, Real(1e-6F) * length);
-        const Real inverse_x = Real(1) / roughness_x_, inverse_y = Real(1) / roughness_y_;
         const Real slope_x = m.x * inverse_z, slope_y = m.y * inverse_z;
-        const Real x = slope_x * inverse_x, y = slope_y * inverse_y;
+        const Real x = slope_x * inverse_x_, y = slope_y * inverse_y_;
         return {x,
                 y,
-                (dm.x - slope_x * dm.z) * inverse_z * inverse_x,
-                (dm.y - slope_y * dm.z) * inverse_z * inverse_y,
+                (dm.x - slope_x * dm.z) * inverse_z * inverse_x_,
+                (dm.y - slope_y * dm.z) * inverse_z * inverse_y_,
                 x * x + y * y,
                 slope_x * slope_x + slope_y * slope_y,
-                (m.x * dm.y - m.y * dm.x) * (inverse_z * inverse_z * inverse_x * inverse_y)};
+                (m.x * dm.y - m.y * dm.x) * (inverse_z * inverse_z * inverse_x_ * inverse_y_)};
     }
 
     /// A great circle has one point nearest to the mirror direction, which is close to the nearest in slopes.
@@ -238,8 +242,7 @@ class contour_area {
     MICA_HOST_DEVICE constexpr Real integrand(const graded_arc& graded, Real x, const mask_of<Real>& beyond) const {
         const Real growth = mica::exp(x), decay = Real(1) / growth, half_width = Real(0.5F) * graded.width;
         const auto at = slopes_at(graded.arc, half_width * (growth - decay));
-        const Real x2 = roughness_x_ * roughness_x_, y2 = roughness_y_ * roughness_y_;
-        const Real a2 = clamp(at.t / maximum(at.q, Real(1e-20F)), minimum(x2, y2), maximum(x2, y2));
+        const Real a2 = clamp(at.t / maximum(at.q, Real(1e-20F)), least_, most_);
         const Real w = mica::sqrt(Real(1) + at.t);
         using shape = typename Facets::shape;
         Real f = Real(0);
@@ -317,7 +320,9 @@ class contour_area {
         return clamp(enclosed + Real(0.5F / pi_float) * sum, Real(0), total_);
     }
 
-    Real total_, roughness_x_, roughness_y_;
+    Real total_;
+    Real inverse_x_{}, inverse_y_{}; ///< of the roughnesses
+    Real least_{}, most_{};          ///< squared roughness
     vector3<Real> wo_, mirror_;
 };
 
